@@ -17,7 +17,7 @@ from app.api.guard.protocol import GuardedProtocol
 from app.config import Settings, load_settings
 from app.json_stderr import json_stderr
 from app.logs import set_level
-from app.services.exposure import CANNOT_START, HOPELESS, refuse_taken_address
+from app.services.exposure import CANNOT_START, START_FAILURES, refuse_taken_address
 
 log = logging.getLogger(__name__)
 
@@ -80,7 +80,7 @@ def main() -> int:
             settings = load_settings()
             refuse_taken_address(settings)
             run(settings)
-        except HOPELESS as problem:
+        except START_FAILURES as problem:
             log.critical("the API cannot start: %s", problem.detail)
             return CANNOT_START
     return 0

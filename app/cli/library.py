@@ -152,7 +152,7 @@ def show_import(lib: Library, job: JobRecord) -> None:
 
 def _show_failures(lib: Library, job_id: str, absent: int) -> None:
     from app.services.clips import jobs
-    from app.services.imports.plan import MOST_ABSENT
+    from app.services.imports.plan import MAX_ABSENT_LISTED
     from app.store.jobs.import_files import FileOutcome
 
     failures = [
@@ -163,8 +163,8 @@ def _show_failures(lib: Library, job_id: str, absent: int) -> None:
     ]
     if failures:
         print_table(("failed", "reason"), failures)
-    if absent > MOST_ABSENT:
-        typer.echo(f"A manifest names {absent - MOST_ABSENT} more files that do not exist.")
+    if absent > MAX_ABSENT_LISTED:
+        typer.echo(f"A manifest names {absent - MAX_ABSENT_LISTED} more files that do not exist.")
 
 
 def _reason(problem: dict[str, Any]) -> str:

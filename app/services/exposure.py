@@ -1,4 +1,4 @@
-"""Where the service listens: not for other machines until there is an API key (DESIGN 12)."""
+"""Checks before the service listens: no other machine may reach it until an API key exists."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from app.store import identity, keys
 from app.store.store import Store
 
 CANNOT_START = 78
-"""Exit code of a process that its settings, its port or its database do not allow to start, so
-that another try would be in vain (EX_CONFIG of sysexits.h)."""
-HOPELESS = (ConfigurationError, DatabaseOutOfDate)
-"""What makes a process end with it."""
+"""Exit code of a process that cannot start because of its settings, its port or its database.
+Another try would fail too (EX_CONFIG of sysexits.h)."""
+START_FAILURES = (ConfigurationError, DatabaseOutOfDate)
+"""Failures that end a process with the exit code CANNOT_START."""
 
 
 def refuse_exposure_without_keys(settings: Settings) -> None:
-    """Raises ConfigurationError when the service would listen off loopback with no key made.
+    """Raise ConfigurationError if other machines could reach a service without an API key.
 
-    Raises DatabaseOutOfDate and LibraryMismatch too, since it has to look into the database.
+    Also raises DatabaseOutOfDate and LibraryMismatch, since the keys are in the database.
     """
     if settings.listens_on_loopback:
         return
@@ -39,13 +39,13 @@ def refuse_exposure_without_keys(settings: Settings) -> None:
 
 
 def refuse_taken_address(settings: Settings) -> None:
-    """Raises ConfigurationError where the service could not listen, before anything is begun."""
+    """Raise ConfigurationError if the service cannot listen, before it starts any process."""
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(
             settings.host, settings.port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
         )[0]
         with socket.socket(family, kind, protocol) as trial:
-            # As the server does: a port is free though old connections linger on it.
+            # The server sets it too: old connections in TIME_WAIT do not block the port.
             trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             trial.bind(address)
     except OSError as error:

@@ -1,7 +1,7 @@
-"""What clients say about a clip: this module alone reads, tidies and checks it.
+"""Checks of all values that clients send about a clip: labels, hints, keyposes, limits.
 
-The same rules hold for a form, a JSON body, a manifest and the command line. Every
-function raises BadField naming the field.
+The same rules hold for a form, a JSON body, a manifest and the command line. Each function returns
+the value in its normal form, and raises BadField, which names the field, for a bad value.
 """
 
 from __future__ import annotations
@@ -23,29 +23,29 @@ from app.store.clips.record import AnalysisHints, ClipChanges, ClipLabels
 MAX_TEXT = 300
 """Characters in a name or label."""
 MAX_PATH = 500
-"""Characters in the path of an imported file: a page's cursor holds one."""
+"""Characters in the path of an imported file. A cursor contains a path, and must stay short."""
 NO_CONTROL = "must not hold control characters"
 MAX_JOINT_NAME = MAX_NAME_LENGTH
-"""Characters of a joint's name; no file may have longer ones."""
+"""Characters of a joint's name; the readers accept no longer names in files."""
 MAX_WORDS = 100
 """Words on one clip."""
 MAX_LIMIT = 1000
 """Hits of one page."""
 MAX_KEYPOSES = 10_000
-"""The most keyposes that a person may name in one clip: three hours of dancing."""
+"""Largest number of annotated keyposes of one clip: three hours of dancing."""
 TEMPI = (20.0, 400.0)
-"""Beats a minute."""
+"""Bounds of a tempo, in beats per minute."""
 MAX_OFFSET = 36_000.0
-"""Seconds."""
+"""Seconds between the start of a motion and the start of its recording."""
 
 
 def bad_field(field: str, message: str) -> BadField:
-    """A BadField that names one field."""
+    """The error for one field; message: without the field's name, as "must be a number"."""
     return BadField(f"{field}: {message}", places=[Place(field, message)])
 
 
 def text(field: str, value: str | None) -> str | None:
-    """A label without surrounding space; None where nothing is left of it."""
+    """A label in Unicode's NFC form without surrounding spaces; None if it is empty."""
     if value is None:
         return None
     if not isinstance(value, str):
@@ -59,12 +59,12 @@ def text(field: str, value: str | None) -> str | None:
 
 
 def holds_control(value: str) -> bool:
-    """Whether there is a control character in it, or half of a surrogate pair."""
+    """Whether the text has a control character, or half of a surrogate pair."""
     return any(unicodedata.category(c) in ("Cc", "Cs") for c in value)
 
 
 def words(value: str | Iterable[str] | None) -> tuple[str, ...] | None:
-    """Words in lower case, each once, in the order given; a string is cut at spaces."""
+    """Words in lower case, without repetitions, in the client's order; spaces separate them."""
     if value is None:
         return None
     parts = value.split() if isinstance(value, str) else list(value)
@@ -75,7 +75,7 @@ def words(value: str | Iterable[str] | None) -> tuple[str, ...] | None:
 
 
 def queried_words(value: Iterable[str]) -> tuple[str, ...]:
-    """The texts of a query by words, each a word, a phrase or a sentence; at least one."""
+    """The texts of a search by words: words, phrases or sentences. At least one must remain."""
     texts = tuple(filter(None, (text("words", part) for part in value)))
     if not any(map(normalize_word, texts)):
         raise bad_field("words", "at least one word is needed")
@@ -85,38 +85,39 @@ def queried_words(value: Iterable[str]) -> tuple[str, ...]:
 
 
 def frame_rate(value: float | str | None) -> float | None:
-    """Frames a second, from 1 to 2000; an empty string is None."""
+    """A frame rate in Hz, within FRAME_RATES; an empty string is None."""
     number = _number("frame_rate", value)
-    least, most = FRAME_RATES
-    if number is not None and not least <= number <= most:
-        raise bad_field("frame_rate", f"must be from {least:g} to {most:g} Hz")
+    lowest, highest = FRAME_RATES
+    if number is not None and not lowest <= number <= highest:
+        raise bad_field("frame_rate", f"must be from {lowest:g} to {highest:g} Hz")
     return number
 
 
 def metres_per_unit(value: float | str | None) -> float | None:
-    """Metres in one unit of the file, from a number or a name (m, cm, mm, in, ...)."""
+    """Meters in one unit of the file, from a number or a name (m, cm, mm, in, ...)."""
     if isinstance(value, str) and value.strip().lower() in METERS_PER_UNIT:
         return METERS_PER_UNIT[value.strip().lower()]
     try:
         number = _number("unit", value)
     except BadField as problem:
-        known = ", ".join(METERS_PER_UNIT)
-        raise bad_field("unit", f"must be one of {known}, or metres per unit") from problem
+        names = ", ".join(METERS_PER_UNIT)
+        raise bad_field("unit", f"must be one of {names}, or meters per unit") from problem
     if number is not None and not SCALES[0] <= number <= SCALES[1]:
-        raise bad_field("unit", "must be between 0.000001 and 1000 metres")
+        raise bad_field("unit", "must be between 0.000001 and 1000 meters")
     return number
 
 
 def roles(value: Mapping[str, str] | None) -> dict[str, str] | None:
-    """Joint names by role, every role known and every name a string."""
+    """Joint names by role; each key must be a JointRole, each value a name. Empty is None."""
     if value is None:
         return None
     if not isinstance(value, Mapping):
         raise bad_field("roles", "must be an object: joint names by role")
-    known = {role.value for role in JointRole}
+    role_names = {role.value for role in JointRole}
     for role, joint in value.items():
-        if role not in known:
-            raise bad_field(f"roles.{role}", f"there is no such role; known are {sorted(known)}")
+        if role not in role_names:
+            message = f"is not a joint role; the roles are {sorted(role_names)}"
+            raise bad_field(f"roles.{role}", message)
         if not isinstance(joint, str) or not 0 < len(joint) <= MAX_JOINT_NAME:
             message = f"must be the name of a joint, of at most {MAX_JOINT_NAME} characters"
             raise bad_field(f"roles.{role}", message)
@@ -126,7 +127,7 @@ def roles(value: Mapping[str, str] | None) -> dict[str, str] | None:
 def keyposes(
     value: str | Iterable[float] | None, field: str = "keyposes"
 ) -> tuple[float, ...] | None:
-    """Seconds from the clip's beginning, rising, each once; a string is cut at spaces."""
+    """Seconds from the clip's start, sorted, without repetitions; a string holds spaces between."""
     if value is None:
         return None
     parts = value.split() if isinstance(value, str) else list(value)
@@ -134,20 +135,21 @@ def keyposes(
         raise bad_field(field, f"must not be more than {MAX_KEYPOSES}")
     times = sorted({time for part in parts if (time := _number(field, part)) is not None})
     if times and times[0] < 0:
-        raise bad_field(field, "must not lie before the clip's beginning")
+        raise bad_field(field, "must not be before the clip's start")
     return tuple(times)
 
 
 def tempo(value: float | str | None) -> float | None:
-    """Beats a minute, from 20 to 400; an empty string is None."""
+    """Beats per minute, within TEMPI; an empty string is None."""
     number = _number("tempo", value)
     if number is not None and not TEMPI[0] <= number <= TEMPI[1]:
-        raise bad_field("tempo", f"must be from {TEMPI[0]:g} to {TEMPI[1]:g} beats a minute")
+        raise bad_field("tempo", f"must be from {TEMPI[0]:g} to {TEMPI[1]:g} beats per minute")
     return number
 
 
 def audio_offset(value: float | str | None) -> float | None:
-    """Seconds of the motion at which its recording begins, negative if before it."""
+    """Seconds from the start of the motion to the start of its recording; negative if the
+    recording starts first."""
     number = _number("audio_offset", value)
     if number is not None and abs(number) > MAX_OFFSET:
         raise bad_field("audio_offset", f"must be within {MAX_OFFSET:g} s of the motion's start")
@@ -155,14 +157,14 @@ def audio_offset(value: float | str | None) -> float | None:
 
 
 def beats(value: str | Iterable[float] | None) -> tuple[float, ...] | None:
-    """Seconds from the clip's beginning, rising, each once; a string is cut at spaces."""
+    """Seconds from the clip's start, sorted and without repetitions; an empty list is None."""
     return keyposes(value, "beats") or None
 
 
 def _number(field: str, value: float | str | None) -> float | None:
     if value is None or (isinstance(value, str) and not value.strip()):
         return None
-    if isinstance(value, bool):
+    if isinstance(value, bool):  # `float(True)` is 1.0, but JSON's true is not a number
         raise bad_field(field, "must be a number")
     try:
         number = float(value)
@@ -181,7 +183,7 @@ def file_name(value: str) -> str:
 
 
 def stem(name: str) -> str:
-    """A file name without its ending."""
+    """A file name without its extension."""
     return name.rpartition(".")[0] or name
 
 
@@ -220,26 +222,29 @@ _STORED_NAMES = {UNIT: "metres_per_unit"}
 """The fields of `AnalysisHints` for which clients use another name."""
 
 
-def checked(said: Mapping[str, Any]) -> ClipChanges:
-    """What a client says of a clip, tidied, by the names of the store; None: nothing said.
+def checked(values: Mapping[str, Any]) -> ClipChanges:
+    """A client's labels and hints in their normal form, by the names of the store.
 
-    said: labels and hints by the names of LABELS and HINTS; empty strings count as None. Raises
-    BadField for a bad value or an unknown name.
+    values: by the names of LABELS and HINTS; None and empty strings mean that there is no value.
+    Raises BadField for a bad value or an unknown name.
     """
-    tidy: dict[str, Any] = {}
-    for field, value in said.items():
+    changes: dict[str, Any] = {}
+    for field, value in values.items():
         check = LABELS.get(field) or HINTS.get(field)
         if check is None:
             raise bad_field(field, "is no label or hint of a clip")
-        tidy[_STORED_NAMES.get(field, field)] = check(value)
-    return tidy
+        changes[_STORED_NAMES.get(field, field)] = check(value)
+    return changes
 
 
 def labels_and_hints(
-    said: Mapping[str, Any], default_name: str
+    values: Mapping[str, Any], default_name: str
 ) -> tuple[ClipLabels, AnalysisHints]:
-    """As `checked`, of a clip that is new; default_name: where no name is said."""
-    labels = checked({name: value for name, value in said.items() if name not in HINTS})
-    hints = checked({name: value for name, value in said.items() if name in HINTS})
-    named = {"name": labels.get("name") or default_name}
-    return ClipLabels(**{**labels, **named}), AnalysisHints(**hints)
+    """The labels and hints of a new clip, checked by `checked`.
+
+    default_name: the clip's name if the values have none. Raises BadField.
+    """
+    labels = checked({name: value for name, value in values.items() if name not in HINTS})
+    hints = checked({name: value for name, value in values.items() if name in HINTS})
+    name = labels.get("name") or default_name
+    return ClipLabels(**{**labels, "name": name}), AnalysisHints(**hints)

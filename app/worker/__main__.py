@@ -10,7 +10,7 @@ import threading
 from app.config import load_settings
 from app.json_stderr import json_stderr
 from app.logs import set_level
-from app.services.exposure import CANNOT_START, HOPELESS
+from app.services.exposure import CANNOT_START, START_FAILURES
 from app.worker.loop import run_worker
 
 log = logging.getLogger(__name__)
@@ -26,7 +26,7 @@ def main() -> int:
             settings = load_settings()
             set_level(settings.log_level.upper())
             run_worker(settings, stop)
-        except HOPELESS as problem:
+        except START_FAILURES as problem:
             log.critical("the worker cannot start: %s", problem.detail)
             return CANNOT_START
     return 0

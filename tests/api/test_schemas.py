@@ -11,7 +11,7 @@ from app.api.schemas.clips import Clip, ClipCreated, ClipForm, ClipList, ClipPat
 from app.api.schemas.jobs import Job
 from app.services import fields
 from app.services.clips.catalogue import PATCHABLE, Created
-from app.services.imports.manifest import KNOWN
+from app.services.imports.manifest import COLUMNS
 from app.store.clips.record import (
     AnalysisHints,
     AttachedAudio,
@@ -109,4 +109,4 @@ def test_every_label_and_hint_has_its_check_its_form_field_and_its_column() -> N
     assert ClipPatch.model_fields.keys() == set(PATCHABLE)
     assert labels < Clip.model_fields.keys()
     not_in_manifests = {"roles", "stack"}
-    assert {*KNOWN} == (ClipForm.model_fields.keys() - not_in_manifests) | {"fps", "keyposes"}
+    assert {*COLUMNS} == (ClipForm.model_fields.keys() - not_in_manifests) | {"fps", "keyposes"}

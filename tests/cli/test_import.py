@@ -18,7 +18,7 @@ def test_good_files_are_imported_and_each_failure_is_printed(
     count = len(clips)
     assert f"{count} of {count + 2} files are in the library ({count} new)." in printed
     assert f"{BAD} " in printed
-    assert f"{ABSENT} The manifest names a file that is not there." in printed
+    assert f"{ABSENT} The manifest names a file that does not exist." in printed
     assert "Traceback" not in imported.err
 
 

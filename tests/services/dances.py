@@ -31,5 +31,5 @@ def dance_file(dance: CyclicDance) -> bytes:
 def upload_dance(
     lib: Library, dance: CyclicDance, name: str = "dance.npz", **fields: Any
 ) -> ClipRecord:
-    """Hand the dance in, to be analysed."""
+    """Upload the dance, and queue its analysis."""
     return clips.create_clip(lib, io.BytesIO(dance_file(dance)), name, fields).clip

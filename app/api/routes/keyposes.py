@@ -48,10 +48,10 @@ def get_keyposes(lib: Lib, clip_id: ClipId, query: Annotated[KeyposeQuery, Query
 )
 def name_keyposes(lib: Lib, clip_id: ClipId, named: NamedKeyposes) -> KeyposesNamed:
     """Name a clip's keyposes."""
-    return KeyposesNamed(times=list(keyposes.name_keyposes(lib, clip_id, named.times)))
+    return KeyposesNamed(times=list(keyposes.annotate_keyposes(lib, clip_id, named.times)))
 
 
 @router.delete("", status_code=204, dependencies=[writes, heavy], responses=refusals(404))
 def forget_named_keyposes(lib: Lib, clip_id: ClipId) -> None:
     """Delete the named keyposes. Then the keyposes that Kinedex finds are used again."""
-    keyposes.name_keyposes(lib, clip_id, ())
+    keyposes.annotate_keyposes(lib, clip_id, ())

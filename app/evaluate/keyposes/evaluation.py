@@ -25,7 +25,7 @@ from app.models.keyposes.thresholds import (
 from app.services import fields
 from app.services.library.library import Library
 from app.services.training.annotated import AnnotatedClip, annotated_ids, read_annotated
-from app.services.training.keypose_learning import NOBODY, examples_of
+from app.services.training.keypose_learning import NO_ANNOTATED_CLIP, examples_of
 from app.store.clips.filter import ClipFilter
 
 END_EFFECTORS = "end-effectors"
@@ -33,8 +33,8 @@ JUDGED_KEYPOSES = (*(method.value for method in EnergyMethod), END_EFFECTORS)
 """The energy methods, and the method by hands and feet."""
 
 NO_ANNOTATIONS = (
-    f"{NOBODY} Name some with PUT /v1/clips/{{id}}/keyposes, or in the column `keyposes` of a "
-    "manifest."
+    f"{NO_ANNOTATED_CLIP} Name some with PUT /v1/clips/{{id}}/keyposes, or in the column "
+    "`keyposes` of a manifest."
 )
 
 

@@ -48,7 +48,7 @@ from app.evaluate.recognition.shares import (
 from app.evaluate.recognition.trials import Stopwatch, Trial, run, run_with_label
 from app.services import fields
 from app.services.library.library import Library
-from app.services.training.synthesis_fit import fit_on
+from app.services.training.synthesis_fit import fit_synthesis_on
 from app.store.clips.filter import ClipFilter
 
 FACTORS = ("person", "task")
@@ -90,7 +90,7 @@ def judge_recognition(
 
 
 def _judge_made(lib: Library, filter: ClipFilter | None) -> SynthesisRows:
-    figures: SynthesisRows = fit_on(lib.store, read_training(lib, filter))[1]["held_out"]
+    figures: SynthesisRows = fit_synthesis_on(lib.store, read_training(lib, filter))[1]["held_out"]
     return figures
 
 

@@ -1,1 +1,1 @@
-"""Child processes: how they are made, a pool of them, and how they end."""
+"""Child processes: starting them, a pool that gives them tasks, and the reason of their end."""

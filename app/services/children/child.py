@@ -1,4 +1,4 @@
-"""One child process that does one task at a time, and how it ended when it died."""
+"""One child process that does one task at a time, and the reason of its end if it died."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from app.services.children.processes import child_context, die_with_parent, one_
 START_TRIES = 5
 """The server that forks children may be killed; the next try starts another one."""
 START_PAUSE_S = 0.2
-BEGIN_WITHIN_S = 60.0
-"""For a child to take a task: it may have to import what the task needs first."""
-END_WITHIN_S = 5.0
-"""For a child whose pipe is closed to end, and for the server to tell how it ended."""
-UNKNOWN = 255
-"""The exit code that multiprocessing gives when the server that knew it has died."""
-FROM_OUTSIDE = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
+MAX_BEGIN_S = 60.0
+"""Time for a child to take a task: it may have to import the modules of the task first."""
+MAX_END_S = 5.0
+"""Time for a child to end after its pipe was closed, and for the server to report its exit code."""
+UNKNOWN_EXIT_CODE = 255
+"""The exit code that multiprocessing reports if the server that knew the code has died."""
+OUTSIDE_SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 """Signals that a process does not raise by its own work."""
 _VMSTAT = Path("/proc/vmstat")
 
@@ -39,9 +39,9 @@ class ChildDied(AnalysisCrashed):
 class ChildEnded(Exception):
     """A child process died while it worked.
 
-    exit_code: negative is minus the signal; None where nobody knows. memory_was_short: the
-    kernel killed a process for want of memory while the child worked. had_begun: whether the
-    child had taken the task.
+    exit_code: minus the number of the signal if a signal killed it; None if it is unknown;
+    memory_was_short: whether the kernel killed a process because of too little memory while the
+    child worked; had_begun: whether the child had taken the task.
     """
 
     def __init__(
@@ -51,25 +51,26 @@ class ChildEnded(Exception):
         memory_was_short: bool = False,
         had_begun: bool = True,
     ) -> None:
-        super().__init__(f"the child process ended ({_told(exit_code)})")
+        super().__init__(f"the child process ended ({_exit_text(exit_code)})")
         self.exit_code = exit_code
         self.memory_was_short = memory_was_short
         self.had_begun = had_begun
 
     @property
     def is_from_outside(self) -> bool:
-        """Whether somebody killed it, so that its task is not to blame."""
+        """Whether another process killed the child, so that its task was not the cause."""
         if self.exit_code is None:
             return True
-        return -self.exit_code in FROM_OUTSIDE and not self.memory_was_short
+        # The kernel kills with SIGKILL if memory is short. Then the task may be the cause.
+        return -self.exit_code in OUTSIDE_SIGNALS and not self.memory_was_short
 
     @property
     def how(self) -> str:
         """The exit code or signal, in words."""
-        return _told(self.exit_code)
+        return _exit_text(self.exit_code)
 
     def as_failure(self) -> KinedexError:
-        """AnalysisInterrupted where it was killed from outside, else ChildDied."""
+        """AnalysisInterrupted if the child was killed from outside, else ChildDied."""
         if self.is_from_outside:
             return AnalysisInterrupted(f"The process was stopped from outside ({self.how}).")
         return ChildDied(f"The process died ({self.how}).")
@@ -77,14 +78,14 @@ class ChildEnded(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What a task returned, or what it raised."""
+    """The result of a task, or the error that it raised."""
 
     value: Any = None
     failure: BaseException | None = None
 
 
 class Child:
-    """A child process behind a pipe that only the two of them hold."""
+    """A child process. It and its parent have the two ends of one pipe, which no other has."""
 
     def __init__(self, process: BaseProcess, pipe: Connection) -> None:
         self.tasks = 0
@@ -92,7 +93,7 @@ class Child:
 
     @classmethod
     def start(cls, prepare: Callable[..., None], arguments: tuple[Any, ...]) -> Self:
-        """A new child that calls `prepare` first. Raises ChildEnded where none can be started."""
+        """A new child that calls `prepare` first. Raises ChildEnded if no child can be started."""
         for _ in range(START_TRIES):
             ours, theirs = multiprocessing.connection.Pipe()
             try:
@@ -113,7 +114,7 @@ class Child:
     def do(
         self, work: Callable[..., Any], arguments: tuple[Any, ...], seconds: float | None
     ) -> Answer:
-        """Have one task done. Raises ChildEnded, and TimeoutError after `seconds`."""
+        """Do one task in the child. Raises ChildEnded, and TimeoutError after `seconds`."""
         self.tasks += 1
         self._begin(work, arguments)
         kills = _memory_kills()
@@ -130,7 +131,7 @@ class Child:
         """Wait until the child has taken the task. Raises ChildEnded."""
         try:
             self._pipe.send((work, arguments))
-            self._receive(BEGIN_WITHIN_S)
+            self._receive(MAX_BEGIN_S)
         except TimeoutError:
             self.kill()
             raise ChildEnded(None, had_begun=False) from None
@@ -148,21 +149,22 @@ class Child:
         return self._pipe.recv()
 
     def has_ended(self) -> bool:
-        """Whether it died while it had nothing to do: an idle child sends nothing."""
+        """Whether the child died while it was idle: an idle child sends nothing."""
         try:
             return self._pipe.poll(0)
         except OSError:
             return True
 
     def kill(self) -> None:
-        """Kill it; whoever waits in `do` gets ChildEnded."""
-        # By its number: once the server is dead, multiprocessing takes all children for dead.
+        """Kill the child; a caller that waits in `do` gets ChildEnded."""
+        # By its process id: after the death of the server, multiprocessing assumes that all
+        # children are dead, and does not kill them.
         if self._process.pid is not None:
             with suppress(ProcessLookupError):
                 os.kill(self._process.pid, signal.SIGKILL)
 
     def end(self) -> None:
-        """Let it end, and make sure that it does."""
+        """Close the pipe, so that the child ends; kill it if it does not."""
         self._pipe.close()
         if not self._wait_for_end():
             self.kill()
@@ -170,44 +172,44 @@ class Child:
         self._exit_code()
 
     def _wait_for_end(self) -> bool:
-        return bool(multiprocessing.connection.wait([self._process.sentinel], END_WITHIN_S))
+        return bool(multiprocessing.connection.wait([self._process.sentinel], MAX_END_S))
 
     def _exit_code(self) -> int | None:
-        """Its exit code; None where nobody knows it."""
-        with one_at_a_time:  # two threads that ask at once would take each other's answer
+        """The exit code of the child; None if it is unknown."""
+        with one_at_a_time:  # two threads at once would read each other's answer of the server
             self._process.join(0)
             code = self._process.exitcode
-        return None if code == UNKNOWN else code
+        return None if code == UNKNOWN_EXIT_CODE else code
 
 
 def _serve(pipe: Connection, prepare: Callable[..., None], arguments: tuple[Any, ...]) -> None:
-    """What the child runs: tasks, until the pipe is closed."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent
+    """The loop of the child: do tasks until the pipe is closed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C must stop the parent, not the child
     die_with_parent()
     prepare(*arguments)
     with suppress(EOFError):
         while True:
-            work, given = pipe.recv()
+            work, task_arguments = pipe.recv()
             pipe.send("begun")
-            _answer(pipe, work, given)
+            _answer(pipe, work, task_arguments)
 
 
 def _answer(pipe: Connection, work: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
     """Send (failure, value); a failure that cannot be sent becomes a RuntimeError."""
-    # A pipe sends nothing of what it cannot pickle, so that another answer can still be sent.
+    # `send` pickles before it writes, so that after a failure another answer can still be sent.
     try:
         pipe.send((None, work(*arguments)))
-    except BaseException as failure:  # noqa: BLE001 - it goes to whoever waits for the task
-        told = "".join(traceback.format_exception(failure))
+    except BaseException as failure:  # noqa: BLE001 - the parent raises it again
+        trace = "".join(traceback.format_exception(failure))
         try:
-            failure.add_note(told)
+            failure.add_note(trace)
             pipe.send((failure, None))
-        except Exception:  # noqa: BLE001
-            pipe.send((RuntimeError(told), None))
+        except Exception:  # noqa: BLE001 - the failure cannot be pickled
+            pipe.send((RuntimeError(trace), None))
 
 
 def _memory_kills() -> int:
-    """How many processes this machine's kernel has killed for want of memory."""
+    """How many processes the kernel of this machine has killed because of too little memory."""
     try:
         lines = _VMSTAT.read_text().splitlines()
     except OSError:
@@ -215,7 +217,7 @@ def _memory_kills() -> int:
     return sum(int(line.split()[1]) for line in lines if line.startswith("oom_kill "))
 
 
-def _told(exit_code: int | None) -> str:
+def _exit_text(exit_code: int | None) -> str:
     if exit_code is None:
-        return "nobody knows how"
+        return "for an unknown reason"
     return f"killed by signal {-exit_code}" if exit_code < 0 else f"exit code {exit_code}"

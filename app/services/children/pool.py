@@ -1,12 +1,13 @@
 """A pool of child processes that may be killed at any moment.
 
-Each child has a pipe of its own and does one task at a time. A child that dies ends its own
-task and no other one. The pool does not use the clock on the wall: a task has its time by the
-kernel's monotonic clock, in the wait for the pipe.
+Each child has its own pipe and does one task at a time. If a child dies, only its own task fails.
+The time of a task is measured by the kernel's monotonic clock, in the wait for the pipe: a change
+of the wall clock does not end a task.
 
-Written here because the pools of the libraries share one pipe and one lock between all
-children (a child killed while it sends its result stops all others), end for good when the
-server that forks the children dies, or measure time by the wall clock.
+This pool is ours, because the pools of libraries have one of three faults. They share one pipe and
+one lock among all children (a child that is killed while it sends its result stops all others);
+they end for good when the server that forks the children dies; or they measure time by the wall
+clock.
 """
 
 from __future__ import annotations
@@ -21,22 +22,22 @@ from typing import Any, TypeVar
 
 from app.services.children.child import Answer, Child, ChildEnded
 
-_Found = TypeVar("_Found")
+_Result = TypeVar("_Result")
 
 TASKS_PER_CHILD = 500
-"""A child is replaced after so many tasks, in case a library leaks memory."""
+"""A child is replaced after this number of tasks, in case a library leaks memory."""
 
 BEGIN_TRIES = 3
-"""Of a task whose child dies before it takes the task."""
+"""How often a task is sent to a child, if the child dies before it takes the task."""
 
 
 class TaskTimedOut(Exception):
-    """A task took longer than its time, and its child was killed."""
+    """A task took longer than its time limit, and its child was killed."""
 
 
 @dataclass(eq=False, slots=True)
 class _Task:
-    """Work to do in a child; is_alone: while no other task of the pool runs."""
+    """Work to do in a child; is_alone: do it while no other task of the pool runs."""
 
     work: Callable[..., Any]
     arguments: tuple[Any, ...]
@@ -47,9 +48,9 @@ class _Task:
 
 
 class ChildPool:
-    """At most `size` child processes, started when there is work; safe to share between threads.
+    """At most `size` child processes. They start when there is work. Threads may share the pool.
 
-    prepare, arguments: called in each child before its first task.
+    prepare, arguments: each child calls `prepare(*arguments)` before its first task.
     """
 
     def __init__(self, size: int, prepare: Callable[..., None], *arguments: Any) -> None:
@@ -65,15 +66,16 @@ class ChildPool:
 
     def submit(
         self,
-        work: Callable[..., _Found],
+        work: Callable[..., _Result],
         *arguments: Any,
         seconds: float | None = None,
         is_alone: bool = False,
-    ) -> Future[_Found]:
-        """Begin a task; its future holds what `work` returns or raises in the child.
+    ) -> Future[_Result]:
+        """Begin a task. Its future gets the result of `work`, or the error that it raised.
 
-        seconds: after which the child is killed and the future holds TaskTimedOut. A child that
-        died gives ChildEnded. Cancelling the future kills the child, also while it works.
+        seconds: time limit; after it the child is killed and the future gets TaskTimedOut; None:
+        no limit. If the child dies, the future gets ChildEnded. Canceling the future kills the
+        child, even while it works. Raises RuntimeError if the pool is closed.
         """
         task = _Task(work, arguments, seconds, is_alone)
         with self._changed:
@@ -86,7 +88,7 @@ class ChildPool:
         return task.future
 
     def close(self) -> None:
-        """Kill the children and cancel what waits; returns when all have ended."""
+        """Kill the children, cancel the waiting tasks, and return when all children have ended."""
         with self._changed:
             self._is_closed = True
             for task in self._waiting:
@@ -108,7 +110,7 @@ class ChildPool:
         while (task := self._next()) is not None:
             try:
                 child = self._do(task, child)
-            except Exception as failure:  # noqa: BLE001 - whatever it is, the task must end
+            except Exception as failure:  # noqa: BLE001 - the task must end after any error
                 child = None
                 _end(task.future, failure)
             finally:
@@ -120,7 +122,7 @@ class ChildPool:
             self._drop(child)
 
     def _next(self) -> _Task | None:
-        """The next task, when it may begin; None when the pool is closed."""
+        """Wait for the next task that may begin. Returns None if the pool is closed."""
         with self._changed:
             while not self._is_closed:
                 if self._waiting and self._may_begin(self._waiting[0]):
@@ -134,20 +136,20 @@ class ChildPool:
         return self._busy == 0 if task.is_alone else not self._is_one_alone
 
     def _do(self, task: _Task, child: Child | None) -> Child | None:
-        """Have a task done; the child, if it still lives."""
-        # The future stays pending while the child works: so it can be cancelled.
+        """Do a task in a child; returns the child if it is still alive."""
+        # The future stays pending while the child works: a running future cannot be canceled.
         task.future.add_done_callback(lambda _: self._kill_if_cancelled(task))
-        for last in (*(False,) * (BEGIN_TRIES - 1), True):
+        for is_last_try in (*(False,) * (BEGIN_TRIES - 1), True):
             if task.future.cancelled():
                 break
-            child = self._living(child)
+            child = self._usable(child)
             try:
-                answer = self._ask(task, child)
+                answer = self._run(task, child)
             except (ChildEnded, TaskTimedOut) as failure:
                 self._drop(child)
                 child = None
-                if not last and isinstance(failure, ChildEnded) and not failure.had_begun:
-                    continue  # it died before it took the task: another child takes it
+                if not is_last_try and isinstance(failure, ChildEnded) and not failure.had_begun:
+                    continue  # the child died before it took the task: another child takes it
                 _end(task.future, failure)
             else:
                 _end(task.future, answer.failure, answer.value)
@@ -155,18 +157,18 @@ class ChildPool:
         if task.future.cancelled():
             _end(task.future, None)
             if child is not None:
-                self._drop(child)  # it may have been killed after its last answer
+                self._drop(child)  # the cancellation may have killed it after its last answer
             return None
         return child
 
-    def _living(self, child: Child | None) -> Child:
-        """The child, or a new one where it has ended or has done enough."""
+    def _usable(self, child: Child | None) -> Child:
+        """The child, or a new one if the child has ended or has done TASKS_PER_CHILD tasks."""
         if child is not None and (child.tasks >= TASKS_PER_CHILD or child.has_ended()):
             self._drop(child)
             child = None
         return child or self._new_child()
 
-    def _ask(self, task: _Task, child: Child) -> Answer:
+    def _run(self, task: _Task, child: Child) -> Answer:
         with self._changed:
             task.child = child
         try:
@@ -187,7 +189,7 @@ class ChildPool:
         with self._changed:
             self._children.add(child)
             if self._is_closed:
-                child.kill()
+                child.kill()  # `close` ran before this child was in `_children`
         return child
 
     def _drop(self, child: Child) -> None:
@@ -197,12 +199,13 @@ class ChildPool:
 
 
 def _end(future: Future[Any], failure: BaseException | None, value: Any = None) -> None:
-    """Give a future its result or failure, unless it was cancelled meanwhile."""
+    """Set the result or the failure of a future, unless it was canceled meanwhile."""
     with suppress(InvalidStateError):
         if failure is None:
             future.set_result(value)
         else:
             future.set_exception(failure)
     if future.cancelled():
+        # This wakes callers of `concurrent.futures.wait`, which `cancel` alone does not.
         with suppress(RuntimeError):
             future.set_running_or_notify_cancel()

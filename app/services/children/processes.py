@@ -1,8 +1,8 @@
-"""How child processes are made: quickly, small, and so that they die with their parent.
+"""Starting child processes that start fast, use little memory and die with their parent.
 
-They are forked from a server process that has imported the numerical libraries, which takes
-seconds, and does nothing else: one that had to be killed is replaced at once, and all share
-the libraries' memory.
+They are forked from a server process, which only imports the numerical libraries. That import takes
+seconds. So a child that was killed is replaced at once, and all children share the memory of the
+libraries.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ LIBRARIES = [
     "scipy.ndimage",
     "scipy.signal",
 ]
-"""What an analysis needs; the server process imports it once for its children."""
+"""Modules that an analysis needs. The server process imports them once for all children."""
 
 one_at_a_time = threading.RLock()
-"""Held while a child is started or asked how it ended: multiprocessing's own lists of children,
-and its numbers on pipes, are not made for several threads."""
+"""Lock for starting a child and for reading its exit code: in multiprocessing neither the list of
+children nor the messages from the server are safe for several threads."""
 
 
 class _Process(multiprocessing.context.ForkServerProcess):
@@ -57,23 +57,23 @@ class _Context(multiprocessing.context.ForkServerContext):
 
 
 def child_context() -> multiprocessing.context.BaseContext:
-    """The way to make children; one server process for each process that asks."""
+    """The context that starts children. Each process that calls this has one server process."""
     context = _Context()
     context.set_forkserver_preload(LIBRARIES)
     return context
 
 
 def import_libraries() -> None:
-    """Import what an analysis needs into this process, so that no first request waits for it."""
+    """Import LIBRARIES into this process, so that the first request does not wait for them."""
     for name in LIBRARIES:
         import_module(name)
 
 
 @contextmanager
 def _main_module_hidden() -> Iterator[None]:
-    """While a child is described to the server, let the main module be an empty one.
+    """Replace the main module by an empty one while a child starts.
 
-    multiprocessing would have each child import it: the whole command line, or the API.
+    multiprocessing would make each child import the main module: the command line, or the API.
     """
     with one_at_a_time:
         main = sys.modules["__main__"]
@@ -85,16 +85,16 @@ def _main_module_hidden() -> Iterator[None]:
 
 
 def log_like_parent(level: str) -> None:
-    """Have this child process log lines of JSON; level: the least severity, as its parent logs."""
+    """Make this child process log JSON lines; level: the lowest severity that it logs."""
     configure_logging(level)
     log_uncaught()
 
 
 def die_with_parent() -> None:
-    """Have this child process exit at once when its parent is gone, however it went.
+    """Make this child process exit at once when its parent has ended in any way.
 
-    A thread waits on the pipe that the parent holds open. (Linux's PR_SET_PDEATHSIG would
-    fire when the parent's *thread* that started the child ends, and requests' threads end.)
+    A thread waits on the pipe that the parent keeps open. (Linux's PR_SET_PDEATHSIG does not fit:
+    it also kills the child when the *thread* that started it ends, and threads of requests end.)
     """
     parent = multiprocessing.parent_process()
     if parent is not None:
@@ -107,22 +107,23 @@ def _exit_after(sentinel: int) -> None:
 
 
 def limit_memory(memory_mb: int) -> None:
-    """Let this process take `memory_mb` MB of address space, libraries included."""
+    """Limit the address space of this process to `memory_mb` MB, libraries included."""
     limit = memory_mb * 2**20
     resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
 
 
 @contextmanager
 def stderr_silenced() -> Iterator[None]:
-    """Let nothing reach this process's standard error, which holds lines of JSON.
+    """Discard all output to this process's standard error, which must hold only JSON lines.
 
-    Decoders in C (libmpg123) write there past Python. For children, which do one thing at a time.
+    Decoders in C (libmpg123) write there without Python, so the file descriptor is replaced. Only
+    for children: they do one task at a time, and other threads would lose their output.
     """
-    kept, nowhere = os.dup(STDERR), os.open(os.devnull, os.O_WRONLY)
+    saved, devnull = os.dup(STDERR), os.open(os.devnull, os.O_WRONLY)
     try:
-        os.dup2(nowhere, STDERR)
+        os.dup2(devnull, STDERR)
         yield
     finally:
-        os.dup2(kept, STDERR)
-        os.close(kept)
-        os.close(nowhere)
+        os.dup2(saved, STDERR)
+        os.close(saved)
+        os.close(devnull)

@@ -34,13 +34,17 @@ WORKER_DEATHS = 30
 clip is seldom the cause: a child process parses its content, and `job_max_attempts` limits the
 deaths of that."""
 FIXED_HINTS = (fields.UNIT, "roles")
-"""A client says these only when it hands in the file."""
+"""Hints that a client can give only with the file, and not change later."""
 PATCHABLE = (*fields.LABELS, *(hint for hint in fields.HINTS if hint not in FIXED_HINTS))
 
 
 @dataclass(frozen=True, slots=True)
 class Created:
-    """The clip of some content, and the job that analyzes it; None if it needs no analysis."""
+    """The result of adding a file.
+
+    clip: the clip of its content; job: analyzes the clip, None if it needs no analysis; is_new:
+    False if a clip with the same content existed and needed no analysis.
+    """
 
     clip: ClipRecord
     job: JobRecord | None
@@ -60,22 +64,22 @@ def create_clip(
     lib: Library,
     content: Readable,
     filename: str,
-    said: Mapping[str, Any] | None = None,
+    values: Mapping[str, Any] | None = None,
     *,
     skeleton: Readable | None = None,
     recording: NewRecording | None = None,
 ) -> Created:
     """Store a file durably and queue its analysis; on return both survive kill -9.
 
-    said: labels and hints as `fields.checked` takes them; skeleton: the ASF file of an AMC file;
-    recording: of the sound. The same bytes again (of motion and skeleton) give the clip that
-    exists. It is queued again if it had failed, or if it comes with another recording, which then
-    replaces the one it had. Raises BadField, EmptyFile, UnknownFormat, TooLarge, DiskFull; then
-    nothing is kept.
+    values: the client's labels and hints, as `fields.checked` takes them; skeleton: the ASF file of
+    an AMC file; recording: a file of sound. If the same bytes (of motion and skeleton) are sent
+    again, the result is the existing clip. That clip is queued again if it had failed, or if it
+    comes with another recording, which replaces the old one. Raises BadField, EmptyFile,
+    UnknownFormat, TooLarge, DiskFull; then nothing is stored.
     """
     file_name = fields.file_name(filename)
-    # Checked before the bytes are read.
-    labels, hints = fields.labels_and_hints(said or {}, fields.stem(file_name))
+    # Before the bytes are read: a wrong label must not cost an upload.
+    labels, hints = fields.labels_and_hints(values or {}, fields.stem(file_name))
     limit = lib.settings.max_upload_bytes
     with ExitStack() as files:
         staged = files.enter_context(lib.store.files.stage(content, max_bytes=limit))
@@ -113,9 +117,9 @@ def keep(*files: StagedFile | None) -> None:
 
 
 def add(tx: Tx, new: NewClip, priority: int = UPLOAD_PRIORITY) -> Created:
-    """Add a kept file's clip and queue its analysis, in the caller's transaction.
+    """Add the clip of a stored file and queue its analysis, in the caller's transaction.
 
-    A recording that it replaces is removed once that is committed.
+    If the clip exists and gets another recording, the old one is removed after the commit.
     """
     added: AddResult = stored.add_or_get(tx, new)
     if not added.needs_analysis:
@@ -135,7 +139,7 @@ def check_content(staged: StagedFile) -> str:
 
 
 def _format_of(file: BinaryIO) -> str:
-    """As `check_content`, from the beginning of the file and the end of a long one."""
+    """The name of the format, from the first bytes of a file and the last bytes of a long one."""
     content = file.read(HEAD_BYTES + TAIL_BYTES)
     if file.seek(0, os.SEEK_END) > len(content):
         file.seek(-TAIL_BYTES, os.SEEK_END)
@@ -145,7 +149,7 @@ def _format_of(file: BinaryIO) -> str:
 
 def _check_pair(format: str, skeleton: StagedFile) -> None:
     if format != "amc":
-        raise fields.bad_field("skeleton", f"goes with an AMC file, not with {format.upper()}")
+        raise fields.bad_field("skeleton", f"is for an AMC file, not for {format.upper()}")
     try:
         found = check_content(skeleton)
     except BadContent as problem:
@@ -155,7 +159,7 @@ def _check_pair(format: str, skeleton: StagedFile) -> None:
 
 
 def enqueue_ingest(tx: Tx, clip_id: str, priority: int) -> JobRecord:
-    """Queue a clip's analysis; one that is queued already is enough."""
+    """Queue a clip's analysis. If one is queued already, this returns its job."""
     return jobs.enqueue(
         tx,
         NewJob(
@@ -189,9 +193,9 @@ def get_clip(lib: Library, clip_id: str) -> ClipRecord:
 
 
 def update_clip(lib: Library, clip_id: str, changes: Mapping[str, Any]) -> ClipRecord:
-    """Change labels and hints (PATCHABLE). A changed hint has the clip analyzed again.
+    """Change labels and hints (PATCHABLE). After a change of a hint the clip is analyzed again.
 
-    A key that is absent stays; None takes a value away. Raises BadField, ClipNotFound.
+    A field without a key stays as it is; None removes a value. Raises BadField, ClipNotFound.
     """
     tidy = _checked_changes(changes)
     if tidy.get("stack") is not None:
@@ -207,24 +211,25 @@ def update_clip(lib: Library, clip_id: str, changes: Mapping[str, Any]) -> ClipR
 
 
 def delete_clip(lib: Library, clip_id: str) -> None:
-    """Remove a clip with all that was derived from it, and its files. Raises ClipNotFound."""
+    """Remove a clip, its arrays and its files. Raises ClipNotFound."""
     lib.store.write_even_when_full(lambda tx: outcomes.remove_clip(tx, clip_id))
 
 
 def open_file(lib: Library, clip_id: str) -> StoredFile:
-    """The original bytes of a clip, whatever its state. Raises ClipNotFound, FileDamaged."""
+    """The original file of a clip in any state. Raises ClipNotFound, FileDamaged."""
     clip = get_clip(lib, clip_id)
     return StoredFile(lib.store.files.checked_path(clip.sha256), clip.file_name, clip.file_size)
 
 
 def open_recording(lib: Library, clip_id: str) -> StoredFile:
-    """The bytes of a clip's recording. Raises as `open_file`, NotFound where it has none."""
+    """The file of a clip's recording. Raises the errors of `open_file`, and NotFound if the clip
+    has no recording."""
     audio = _recording_of(get_clip(lib, clip_id))
     return StoredFile(lib.store.files.checked_path(audio.sha256), audio.name, audio.size)
 
 
 def remove_recording(lib: Library, clip_id: str) -> ClipRecord:
-    """Take a clip's recording away; the clip is analyzed again. Raises as `open_recording`."""
+    """Remove a clip's recording and queue a new analysis. Raises ClipNotFound, NotFound."""
 
     def remove(tx: Tx) -> ClipRecord:
         audio = _recording_of(stored.get(tx, clip_id))
@@ -245,7 +250,8 @@ def _recording_of(clip: ClipRecord) -> AttachedAudio:
 def _checked_changes(changes: Mapping[str, Any]) -> ClipChanges:
     for field in changes:
         if field not in PATCHABLE:
-            raise fields.bad_field(field, f"cannot be changed; what can: {', '.join(PATCHABLE)}")
+            allowed = ", ".join(PATCHABLE)
+            raise fields.bad_field(field, f"cannot be changed; fields that can: {allowed}")
     tidy = fields.checked(changes)
     if "name" in tidy and tidy["name"] is None:
         raise fields.bad_field("name", "must not be empty")

@@ -24,7 +24,7 @@ from app.errors import (
 )
 from app.services.children.child import ChildDied
 from app.services.library.analysis_pool import AnalysisRequest
-from app.services.library.keypose_frames import named_keyposes
+from app.services.library.keypose_frames import annotated_keypose_arrays
 from app.services.library.library import Library
 from app.services.library.stored_motion import motion_arrays
 from app.store.clips import repository as stored
@@ -33,8 +33,8 @@ from app.store.database.engine import Tx
 from app.store.jobs import leases, outcomes
 from app.store.jobs.record import ClaimedJob
 
-MOST_WARNINGS = 50
-"""The most warnings that one clip keeps."""
+MAX_WARNINGS = 50
+"""Largest number of warnings that are stored for one clip."""
 RETRY_DELAY_S = 5.0
 """How long to wait before a temporary failure is tried again."""
 
@@ -73,30 +73,36 @@ def _thresholds(lib: Library) -> tuple[float, float] | None:
     return None if learned is None else (learned.t1, learned.t2)
 
 
-def finish(tx: Tx, claimed: ClaimedJob, clip: ClipRecord, found: Analysis) -> None:
+def finish(tx: Tx, claimed: ClaimedJob, clip: ClipRecord, analysis: Analysis) -> None:
     """Make the clip ready, unless it was changed meanwhile and waits for another analysis.
 
-    `clip` is as it was when the analysis began. Imports that wait for it are the caller's to
-    settle. Raises LeaseLost, ClipNotFound, StorageError.
+    clip: its record at the start of the analysis. The caller must settle the imports that wait for
+    the clip. Raises LeaseLost, ClipNotFound, StorageError.
     """
     if _is_superseded(tx, clip):
         _leave(tx, claimed, clip)
         return
-    arrays = {**found.arrays, **motion_arrays(found.motion), **named_keyposes(tx, clip, found)}
-    outcomes.finish_ingest(tx, claimed.lease, clip.id, facts(found), arrays, settles_imports=False)
+    arrays = {
+        **analysis.arrays,
+        **motion_arrays(analysis.motion),
+        **annotated_keypose_arrays(tx, clip, analysis),
+    }
+    outcomes.finish_ingest(
+        tx, claimed.lease, clip.id, facts(analysis), arrays, settles_imports=False
+    )
 
 
 def fail(
     tx: Tx, claimed: ClaimedJob, clip: ClipRecord, problem: KinedexError, max_failures: int
 ) -> None:
-    """Fail the clip for its own reason; what may pass is tried again. Raises LeaseLost.
+    """Fail the clip, or queue its analysis again if the problem may be temporary.
 
-    A child that was killed from outside is no failure of the clip.
+    A child that was killed from outside is not a failure of the clip. Raises LeaseLost.
     """
     if _is_superseded(tx, clip):
         _leave(tx, claimed, clip)
     elif isinstance(problem, AnalysisInterrupted):
-        outcomes.retry_after_kill(tx, claimed, _never_left_alone(problem).as_problem())
+        outcomes.retry_after_kill(tx, claimed, _always_killed(problem).as_problem())
     elif isinstance(problem, ChildDied | StorageError):
         outcomes.retry_or_fail(
             tx, claimed, problem.as_problem(), delay_s=RETRY_DELAY_S, max_failures=max_failures
@@ -105,8 +111,8 @@ def fail(
         outcomes.fail_job(tx, claimed, problem.as_problem(), is_verdict=_is_verdict(problem))
 
 
-def _never_left_alone(problem: KinedexError) -> KinedexError:
-    """What a clip ends with whose analysis was killed from outside every time."""
+def _always_killed(problem: KinedexError) -> KinedexError:
+    """The final error of a clip, if every try of its analysis was killed from outside."""
     return AnalysisCrashed(
         f"{problem.detail} This happened {outcomes.MAX_KILLS + 1} times, the last time while no"
         " other file was analyzed here. Find out what stops the process (often a limit on"
@@ -115,15 +121,16 @@ def _never_left_alone(problem: KinedexError) -> KinedexError:
 
 
 def _is_verdict(problem: KinedexError) -> bool:
-    """Whether a reader refused the content, so that another try can find nothing else."""
+    """Whether a reader refused the content, so that another try would give the same error."""
+    # A crash and a timeout may depend on the load of the machine.
     is_machine = isinstance(problem, AnalysisCrashed | AnalysisTimedOut)
     return isinstance(problem, BadContent | TooLarge) and not is_machine
 
 
-def facts(found: Analysis) -> ClipFacts:
-    """What the analysis found out, for the clip's row."""
-    motion = found.motion
-    doubts = (*motion.cautions, *found.cautions)
+def facts(analysis: Analysis) -> ClipFacts:
+    """The results of an analysis that are columns of the clip's row."""
+    motion = analysis.motion
+    cautions = (*motion.cautions, *analysis.cautions)
     return ClipFacts(
         format=motion.format,
         frames=motion.frames,
@@ -136,15 +143,15 @@ def facts(found: Analysis) -> ClipFacts:
         missing_roles=tuple(role.value for role in motion.missing_roles),
         warnings=tuple(
             ClipWarning(c.code, shortened(c.detail, MAX_MESSAGE), c.likely)
-            for c in doubts[:MOST_WARNINGS]
+            for c in cautions[:MAX_WARNINGS]
         ),
         analysis_version=ANALYSIS_VERSION,
-        audio_offset=found.audio_offset,
+        audio_offset=analysis.audio_offset,
     )
 
 
 def _is_superseded(tx: Tx, clip: ClipRecord) -> bool:
-    """Whether what the client says of the file has changed since the analysis began."""
+    """Whether the client changed a hint or the recording since the analysis began."""
     return stored.analysis_input(tx, clip.id) != clip.analysis_input
 
 

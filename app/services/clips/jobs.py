@@ -21,11 +21,11 @@ FIRST_FILES = 100
 FILES_A_PAGE = 1000
 JOBS_A_ROUND = 200
 FILES_A_ROUND = 5_000
-"""What is removed of old jobs in one transaction: others must not wait for it."""
+"""Old jobs, and files of theirs, that one transaction removes: other writers must not wait long."""
 
 
 def get_job(lib: Library, job_id: str) -> JobRecord:
-    """A job by id, an import's result with its first files; raises JobNotFound."""
+    """A job by id; the result of an import has its first files. Raises JobNotFound."""
     with lib.store.read() as tx:
         return _with_files(tx, stored.get(tx, job_id))
 
@@ -49,7 +49,7 @@ def list_files(
     limit: int = 50,
     cursor: str | None = None,
 ) -> Page[ImportedFile]:
-    """One page of an import's files, by path; of any other job there are none.
+    """One page of an import's files, by path; empty for other jobs.
 
     Raises JobNotFound, BadField for a bad cursor.
     """
@@ -72,7 +72,7 @@ def all_files(
 
 
 def cancel_or_remove(lib: Library, job_id: str) -> JobRecord | None:
-    """Ask an open job to stop; remove one that has ended, which returns None.
+    """Cancel an open job, which is returned; or remove an ended job, which returns None.
 
     Raises JobNotFound, Conflict for the newest fit.
     """
@@ -87,10 +87,10 @@ def _cancel_or_remove(tx: Tx, job_id: str) -> JobRecord | None:
 
 
 def remove_old_jobs(lib: Library) -> int:
-    """Remove some of the jobs that ended longer ago than the settings keep them; how many.
+    """Remove some of the jobs that ended longer ago than `job_retention_days`; returns how many.
 
-    Call it now and then. A clock that jumps ahead makes every job look old: a call removes a few
-    of them only, so that they do not all go before somebody sets the clock right.
+    Call it from time to time. A clock that jumps ahead makes every job look old. So one call
+    removes only a few jobs, and there is time to correct the clock.
     """
     days = lib.settings.job_retention_days
     if not days:

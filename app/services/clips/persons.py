@@ -25,10 +25,10 @@ _log = logging.getLogger(__name__)
 
 
 def forget_person(lib: Library, name: str) -> JobRecord:
-    """Remove a person's labels and every model that holds them; the job fits the models anew.
+    """Remove a person's labels and all models that hold persons; the job fits the models again.
 
-    A person whose clips were all deleted may still be held by a model; they can be forgotten too.
-    Raises NotFound where no clip carries the person and no model holds them, BadField.
+    A model may still hold a person whose clips were all deleted: this person can be forgotten too.
+    Raises BadField, and NotFound if no clip and no model has the person.
     """
     person = fields.text("name", name) or ""
     job = lib.store.write_even_when_full(lambda tx: _forget(tx, person))
@@ -47,9 +47,9 @@ def _forget(tx: Tx, person: str) -> JobRecord:
 
 
 def remove_person_models(lib: Library) -> bool:
-    """Remove every model that holds persons, as when their recognition is switched off.
+    """Remove every model that holds persons, after their recognition was switched off.
 
-    Returns whether there was one; then a fit is queued, for what can be had without persons.
+    Returns whether there was such a model. Then a fit is queued, for the models without persons.
     """
     with lib.store.write() as tx:
         removed = models.remove(tx, _HOLDING_PERSONS)

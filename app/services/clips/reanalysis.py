@@ -1,6 +1,6 @@
 """Analyzing stored clips again: those of an earlier analysis version, failed ones, or all.
 
-A clip's file is kept, so that a better analysis can find everything again.
+The original file of each clip is stored, so that a better analysis can compute everything again.
 A ready clip stays ready and searchable with the analysis that it has, until the new one replaces
 it in one transaction. So during an upgrade searches use analyses of two versions: a hit may come
 from the older one. If the older arrays of a clip have another shape, the index that needs them
@@ -24,8 +24,11 @@ BATCH = 200
 
 
 def requeue_outdated(lib: Library) -> int:
-    """Queue the ready clips whose analysis is of another version, or older than a change of the
-    hints or the recording; return how many."""
+    """Queue the ready clips with an outdated analysis; returns how many.
+
+    An analysis is outdated if it is of another version, or older than the last change of the hints
+    or the recording.
+    """
     with lib.store.read() as tx:
         ids = clip_listing.list_outdated_ids(tx, ANALYSIS_VERSION)
     return _requeue(lib, ids)

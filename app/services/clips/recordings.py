@@ -27,13 +27,15 @@ class NewRecording:
 
 
 def stage(lib: Library, recording: NewRecording) -> AbstractContextManager[StagedFile]:
-    """Write the recording to disk without keeping it yet. Raises TooLarge, DiskFull."""
+    """Write the recording to a temporary file. Raises TooLarge, DiskFull."""
     return lib.store.files.stage(recording.content, max_bytes=lib.settings.max_upload_bytes)
 
 
 def attached(staged: StagedFile, filename: str) -> AttachedAudio:
-    """The recording as a part of its clip. Raises BadField where its first bytes are not those of
-    a recording."""
+    """The recording as a part of its clip's record.
+
+    Raises BadField if the first bytes are of no known sound format.
+    """
     with staged.open() as file:
         try:
             sniff_audio(file.read(HEAD_BYTES))

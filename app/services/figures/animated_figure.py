@@ -25,12 +25,12 @@ RATE = 15.0
 """Frames per second; browsers interpolate linearly between them."""
 MAX_FRAMES = 1200
 """Largest number of frames of a picture; longer motions have fewer frames per second."""
-MARKS_APART = 0.5
-"""Meters."""
+MARK_DISTANCE = 0.5
+"""Meters between marks on the floor."""
 MAX_MARKS = 400
 HEAD = "head"
 BAR = 4
-"""Pixels."""
+"""Height of the time bar in pixels."""
 
 
 def animated_svg(figures: Sequence[Figure], rate: float, title: str) -> str:
@@ -39,7 +39,7 @@ def animated_svg(figures: Sequence[Figure], rate: float, title: str) -> str:
     Raises ValueError without a figure or a frame.
     """
     if not figures or not all(len(figure.positions) for figure in figures):
-        raise ValueError("nothing can be animated without a frame")
+        raise ValueError("an animation needs at least one figure, and each figure a frame")
     shown = min(rate, RATE, MAX_FRAMES * rate / len(figures[0].positions))
     moving = [
         replace(f, positions=resample(f.positions.astype(np.float64), rate, shown)) for f in figures
@@ -48,9 +48,9 @@ def animated_svg(figures: Sequence[Figure], rate: float, title: str) -> str:
     time = _Time((len(moving[0].positions) - 1) / shown)
     width = WIDTH * len(moving)
     panels = "".join(
-        f'<svg x="{place * WIDTH}" width="{WIDTH}" height="{HEIGHT}">'
+        f'<svg x="{index * WIDTH}" width="{WIDTH}" height="{HEIGHT}">'
         f"{_panel(figure, camera, time)}</svg>"
-        for place, figure in enumerate(moving)
+        for index, figure in enumerate(moving)
     )
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {HEIGHT}" '
@@ -86,7 +86,7 @@ class _Time:
 
 def _panel(figure: Figure, camera: Camera, time: _Time) -> str:
     points = camera.pixels(figure)
-    order = (LEFT, TRUNK, RIGHT)  # as if seen from the right
+    order = (LEFT, TRUNK, RIGHT)  # the right limbs are drawn last, in front, as seen from the right
     lines = sorted(
         limbs(np.asarray(figure.parents)), key=lambda line: order.index(color(line, figure.names))
     )
@@ -115,18 +115,19 @@ def _head(figure: Figure, points: FloatArray, camera: Camera, time: _Time) -> st
 
 def _floor(figure: Figure, camera: Camera, time: _Time) -> str:
     """The floor with its marks, which pass by if the camera follows the body."""
-    passed = camera.passed(figure)
-    reach = 0.5 * WIDTH / camera.scale
-    first, last = passed.min() + camera.center - reach, passed.max() + camera.center + reach
-    apart = MARKS_APART
-    while (last - first) / apart > MAX_MARKS:
-        apart *= 2
-    places = apart * np.arange(np.ceil(first / apart), np.floor(last / apart) + 1)
+    travel = camera.travel(figure)
+    # The marks cover all of the floor that the camera sees at any time.
+    half = 0.5 * WIDTH / camera.scale
+    first, last = travel.min() + camera.center - half, travel.max() + camera.center + half
+    distance = MARK_DISTANCE
+    while (last - first) / distance > MAX_MARKS:
+        distance *= 2
+    positions = distance * np.arange(np.ceil(first / distance), np.floor(last / distance) + 1)
     marks = "".join(
         f"M{x} {camera.ground:.1f}v6"
-        for x in _numbers(0.5 * WIDTH + camera.scale * (places - camera.center))
+        for x in _numbers(0.5 * WIDTH + camera.scale * (positions - camera.center))
     )
-    shifts = [f"{x} 0" for x in _numbers(-camera.scale * passed)]
+    shifts = [f"{x} 0" for x in _numbers(-camera.scale * travel)]
     return (
         f'<g stroke="{GROUND}" stroke-width="2"><path d="M0 {camera.ground:.1f}H{WIDTH}"/>'
         f'<path d="{marks}" transform="translate({shifts[0]})">{time.move(shifts)}</path></g>'

@@ -15,11 +15,12 @@ WIDTH, HEIGHT = 360, 300
 MARGIN = 16.0
 CAPTION = 22.0
 """Pixels kept free above figures that have labels."""
-FOLLOW_BELOW = 0.6
+MIN_FIXED_SHARE = 0.6
 """If a fixed camera would reduce the figure below this share of its size, the camera follows."""
 HEAD_SIZE = 0.06
 """Radius of a head as a share of the height of the visible body."""
-_SMALLEST = 1e-3
+_MIN_EXTENT = 1e-3
+"""Meters. A smaller body counts as this large, so that no scale is infinite."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,9 +45,13 @@ class Figure:
 
 @dataclass(frozen=True, slots=True)
 class Camera:
-    """direction: (2,) horizontal unit vector (x, z), the picture's x axis; scale: pixels a
-    meter; center: meters along `direction` in the middle of the panel; floor: meters above 0;
-    ground: its y in pixels; head: radius in pixels; follows: whether it goes with the root."""
+    """The projection of bodies to a panel, seen from the side.
+
+    direction: (2,) horizontal unit vector (x, z), the picture's x axis; scale: pixels per meter;
+    center: meters along `direction` in the middle of the panel; floor: height of the floor in
+    meters; ground: y of the floor in pixels; head: radius in pixels; follows: whether the camera
+    moves with the root.
+    """
 
     direction: FloatArray
     scale: float
@@ -56,45 +61,51 @@ class Camera:
     head: float
     follows: bool
 
-    def passed(self, figure: Figure) -> FloatArray:
-        """(frames,) meters that the camera has moved along `direction`."""
-        gone = figure.root[:, [0, 2]] @ self.direction
-        return np.asarray(gone if self.follows else np.zeros(len(gone)))
+    def travel(self, figure: Figure) -> FloatArray:
+        """(frames,) position of the camera along `direction` in meters; 0 for a fixed camera."""
+        root = figure.root[:, [0, 2]] @ self.direction
+        return np.asarray(root if self.follows else np.zeros(len(root)))
 
     def pixels(self, figure: Figure) -> FloatArray:
         """(frames, joints, 2) x and y in pixels in the figure's panel."""
-        across = figure.positions[..., [0, 2]] @ self.direction - self.passed(figure)[:, None]
+        across = figure.positions[..., [0, 2]] @ self.direction - self.travel(figure)[:, None]
         x = 0.5 * WIDTH + self.scale * (across - self.center)
+        # The y axis of SVG points down.
         y = self.ground - self.scale * (figure.positions[..., 1] - self.floor)
         return np.stack([x, y], axis=-1)
 
 
 def camera_for(figures: Sequence[Figure]) -> Camera:
     """A common camera for all figures that keeps each of them inside its panel."""
-    around = np.concatenate([f.positions - f.root[:, None] for f in figures], axis=1)
+    # (frames, joints of all figures, 3) relative to each figure's own root
+    relative = np.concatenate([f.positions - f.root[:, None] for f in figures], axis=1)
     root = figures[0].root
-    direction = widest_direction(around, root[-1] - root[0])
+    direction = widest_direction(relative, root[-1] - root[0])
     heights = np.concatenate([figure.positions[..., 1].ravel() for figure in figures])
-    tall = max(float(np.ptp(heights)), _SMALLEST) * (1 + HEAD_SIZE)
+    height = max(float(np.ptp(heights)), _MIN_EXTENT) * (1 + HEAD_SIZE)
     caption = CAPTION if any(figure.label for figure in figures) else 0.0
-    most = (HEIGHT - 2 * MARGIN - caption) / tall
-    still = np.concatenate([(f.positions[..., [0, 2]] @ direction).ravel() for f in figures])
-    along = (around[..., [0, 2]] @ direction).ravel()
-    follows = _scale(still, tall, most) < FOLLOW_BELOW * _scale(along, tall, most)
-    seen = along if follows else still
-    scale = _scale(seen, tall, most)
+    max_scale = (HEIGHT - 2 * MARGIN - caption) / height
+    # The x coordinates that a fixed camera sees, and those that a following camera sees.
+    fixed = np.concatenate([(f.positions[..., [0, 2]] @ direction).ravel() for f in figures])
+    following = (relative[..., [0, 2]] @ direction).ravel()
+    follows = _scale(fixed, height, max_scale) < MIN_FIXED_SHARE * _scale(
+        following, height, max_scale
+    )
+    visible = following if follows else fixed
+    scale = _scale(visible, height, max_scale)
     return Camera(
         direction=direction,
         scale=scale,
-        center=0.5 * float(seen.min() + seen.max()),
+        center=0.5 * float(visible.min() + visible.max()),
         floor=float(heights.min()),
-        ground=HEIGHT - MARGIN - (most - scale) * tall / 3,
-        head=HEAD_SIZE * scale * tall,
+        # a third of the free height goes below the floor
+        ground=HEIGHT - MARGIN - (max_scale - scale) * height / 3,
+        head=HEAD_SIZE * scale * height,
         follows=follows,
     )
 
 
-def _scale(across: FloatArray, tall: float, most: float) -> float:
-    """Pixels per meter at which a body of extent `across` (m) and height `tall` (m) fits."""
-    wide = max(float(np.ptp(across)), _SMALLEST) + 2 * HEAD_SIZE * tall
-    return min(most, (WIDTH - 2 * MARGIN) / wide)
+def _scale(across: FloatArray, height: float, max_scale: float) -> float:
+    """Pixels per meter at which x coordinates `across` (m) and a `height` (m) fit in the panel."""
+    width = max(float(np.ptp(across)), _MIN_EXTENT) + 2 * HEAD_SIZE * height
+    return min(max_scale, (WIDTH - 2 * MARGIN) / width)

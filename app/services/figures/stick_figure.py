@@ -16,32 +16,33 @@ PAPER, GROUND = "#f6f4ef", "#d5cfc2"
 EXTENT_WEIGHT = 0.05
 """Weight of the extent of the body relative to its movement. It decides the direction of view for a
 body that does not move."""
-STAYS = 0.05
+MIN_TRAVEL = 0.05
 """Meters along the picture's x axis; a body that moves less far counts as staying in place."""
 
 
-def widest_direction(around: FloatArray, travelled: FloatArray) -> FloatArray:
-    """(2,) horizontal unit vector (x, z) along which a body moves most, and extends.
+def widest_direction(relative: FloatArray, travel: FloatArray) -> FloatArray:
+    """(2,) horizontal unit vector (x, z) in which a body moves most.
 
-    around: (frames, joints, 3) meters relative to the hips; travelled: (3,) meters from the first
-    to the last frame. A traveling body moves to the right; otherwise the sign is fixed, so that
-    pictures are stable.
+    relative: (frames, joints, 3) meters, Y up, relative to the hips; travel: (3,) meters from the
+    first to the last frame. The direction is the first principal axis of the movement, with a small
+    weight for the extent of the body. A traveling body moves to the right. Otherwise the sign
+    depends only on the direction, so that similar clips have similar pictures.
     """
-    flat = np.asarray(around, dtype=np.float64)[:, :, [0, 2]]
+    flat = np.asarray(relative, dtype=np.float64)[:, :, [0, 2]]
     moving = (flat - flat.mean(axis=0)).reshape(-1, 2)
     still = flat.reshape(-1, 2)
     _, vectors = np.linalg.eigh(moving.T @ moving + EXTENT_WEIGHT * (still.T @ still))
     direction: FloatArray = vectors[:, -1]
-    sign = float(direction @ travelled[[0, 2]])
-    if abs(sign) < STAYS:
+    sign = float(direction @ travel[[0, 2]])
+    if abs(sign) < MIN_TRAVEL:
         sign = float(direction[np.argmax(np.abs(direction))])
     return direction if sign >= 0 else -direction
 
 
 def limbs(parents: IntArray) -> list[list[int]]:
-    """A skeleton as lines. Each goes from a root or branching joint to the next one or to an end.
+    """A skeleton as lines of joints, from a root or branching joint to the next one or to an end.
 
-    parents: (joints,), -1 for a root.
+    parents: (joints,) index of each joint's parent, -1 for a root. Returns joint indexes.
     """
     children: dict[int, list[int]] = {}
     for joint, parent in enumerate(parents.tolist()):
@@ -49,7 +50,7 @@ def limbs(parents: IntArray) -> list[list[int]]:
     lines = []
     for start, after in children.items():
         if start < 0 or (len(after) == 1 and parents[start] >= 0):
-            continue  # above the roots, or inside a line
+            continue  # -1 is no joint; a joint with one child is inside a line
         for joint in after:
             line = [start, joint]
             while len(children.get(line[-1], ())) == 1:

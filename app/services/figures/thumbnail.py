@@ -43,7 +43,7 @@ _COLUMN = {role: index for index, role in enumerate(SUN_ROLES)}
 
 
 def thumbnail(positions: FloatArray, title: str) -> str:
-    """An SVG of 320 x 180 from (frames, 13, 3) meters, Y up, in Sun's order of roles.
+    """An SVG of 320 x 180 pixels from positions (frames, 13, 3), meters, Y up, in SUN_ROLES order.
 
     Time runs from left to right and from pale to full color; the left limbs are orange,
     the right ones blue.
@@ -51,10 +51,10 @@ def thumbnail(positions: FloatArray, title: str) -> str:
     chosen = _spread(positions)
     hips = positions[:, _COLUMN[_R.HIPS]]
     flat = _project(chosen, widest_direction(_around_hips(positions), hips[-1] - hips[0]))
-    placed, head, ground = _place(flat)
+    figure_points, head, ground = _side_by_side(flat)
     figures = "".join(
         _figure(points, head, opacity)
-        for points, opacity in zip(placed, _opacities(len(placed)), strict=True)
+        for points, opacity in zip(figure_points, _opacities(len(figure_points)), strict=True)
     )
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" '
@@ -68,7 +68,10 @@ def thumbnail(positions: FloatArray, title: str) -> str:
 
 
 def _spread(positions: FloatArray) -> FloatArray:
-    """(poses, 13, 3) by time: the first frame, then those farthest from the chosen ones."""
+    """(poses, 13, 3) in the order of time: at most POSES poses that differ most.
+
+    The first is the first frame. Each next one is the frame farthest from the chosen ones.
+    """
     relative = _around_hips(positions).reshape(len(positions), -1)
     chosen = [0]
     nearest = np.linalg.norm(relative - relative[0], axis=1)
@@ -91,16 +94,20 @@ def _project(poses: FloatArray, direction: FloatArray) -> FloatArray:
     return np.stack([across, height], axis=-1)
 
 
-def _place(flat: FloatArray) -> tuple[FloatArray, float, float]:
-    """Points (poses, 13, 2), radius of the head and y of the floor, all in pixels."""
+def _side_by_side(flat: FloatArray) -> tuple[FloatArray, float, float]:
+    """Points (poses, 13, 2), radius of the head and y of the floor, all in pixels.
+
+    flat: (poses, 13, 2) meters. The figures have one scale and equal gaps between them.
+    """
     lefts, rights = flat[:, :, 0].min(axis=1), flat[:, :, 0].max(axis=1)
     head_size = 0.12 * max(float(flat[:, :, 1].max()), 1e-3)
-    needed = float((rights - lefts).sum()) + head_size * (len(flat) + 1)
-    tallest = float(flat[:, :, 1].max()) + head_size
-    scale = min((WIDTH - 2 * MARGIN) / max(needed, 1e-3), (HEIGHT - 2 * MARGIN) / tallest)
+    min_width = float((rights - lefts).sum()) + head_size * (len(flat) + 1)
+    height = float(flat[:, :, 1].max()) + head_size
+    scale = min((WIDTH - 2 * MARGIN) / max(min_width, 1e-3), (HEIGHT - 2 * MARGIN) / height)
     gap = (WIDTH - 2 * MARGIN - scale * float((rights - lefts).sum())) / (len(flat) + 1)
     starts = MARGIN + gap + np.concatenate([[0.0], np.cumsum(scale * (rights - lefts) + gap)[:-1]])
-    ground = HEIGHT - MARGIN - (HEIGHT - 2 * MARGIN - scale * tallest) / 3
+    # a third of the free height goes below the floor
+    ground = HEIGHT - MARGIN - (HEIGHT - 2 * MARGIN - scale * height) / 3
     x = starts[:, None] + scale * (flat[:, :, 0] - lefts[:, None])
     y = ground - scale * flat[:, :, 1]
     return np.stack([x, y], axis=-1), 0.5 * scale * head_size, ground

@@ -1,1 +1,1 @@
-"""Every search, and the map of all clips."""
+"""All searches, and the map of all clips."""

@@ -19,7 +19,7 @@ from app.search.index.nearest_ranking import NearestRanking
 from app.services.find.query import Arrays
 from app.services.library.fitted_models import ModelKind
 from app.services.library.library import Library
-from app.services.library.precomputed_rows import POINTS, read_known
+from app.services.library.precomputed_rows import POINTS, read_precomputed
 from app.store.clips.filter import ClipFilter
 
 KINDS = {
@@ -49,10 +49,10 @@ def rank_by_metric(
     clip_filter: ClipFilter,
     exclude: frozenset[str] = frozenset(),
 ) -> MetricRanking:
-    """All clips that pass the filter and are not excluded. The index must have caught up with the
-    library.
+    """Rank all clips that pass the filter and are not excluded.
 
-    descriptors: the INPUTS of the query. Raises ModelNotFitted.
+    The index must have caught up with the library. descriptors: the INPUTS of the query by name;
+    method: one of KINDS; exclude: ids of clips. Raises ModelNotFitted.
     """
     kind = KINDS[method]
     if kind is ModelKind.METRIC_PERSON and not lib.settings.recognize_persons:
@@ -66,18 +66,20 @@ def rank_by_metric(
         query,
         clip_filter,
         exclude,
-        partial(read_known, lib, fitted.id, POINTS),
+        partial(read_precomputed, lib, fitted.id, POINTS),
     )
     content = hashlib.sha256(b"".join(descriptors[name].tobytes() for name in INPUTS)).hexdigest()
     return MetricRanking(found, fitted.id, content, model.calibration.probability)
 
 
 def _project(lib: Library, model: LearnedMetric, clip_ids: Sequence[str]) -> dict[str, FloatArray]:
-    """Coordinates by clip id; clips that are gone are left out."""
+    """(d,) coordinates in the metric by clip id; clips without the arrays are left out."""
     with lib.store.read() as tx:
-        found = [usable_arrays.get_many(tx, clip_ids, name) for name in INPUTS]
-    there = [clip_id for clip_id in clip_ids if all(clip_id in part for part in found)]
-    if not there:
+        inputs = [usable_arrays.get_many(tx, clip_ids, name) for name in INPUTS]
+    usable = [clip_id for clip_id in clip_ids if all(clip_id in rows for rows in inputs)]
+    if not usable:
         return {}
-    described = ClipDescriptors(*(np.stack([part[clip_id] for clip_id in there]) for part in found))
-    return dict(zip(there, model.axes.project(described), strict=True))
+    described = ClipDescriptors(
+        *(np.stack([rows[clip_id] for clip_id in usable]) for rows in inputs)
+    )
+    return dict(zip(usable, model.axes.project(described), strict=True))

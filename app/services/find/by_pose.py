@@ -1,4 +1,4 @@
-"""Find a pose: which clips take it, and when."""
+"""Find a pose: the clips in which it occurs, and its times."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ from app.services.library.library import Library
 
 METHOD = "pose"
 SCALE = 0.25
-"""Body lengths at which the score is one half: about the distance of a pose from clips that
-never take it."""
+"""Body lengths at which the score is one half: about the distance of a pose from clips in which
+it does not occur."""
 
 
 @dataclass(frozen=True, slots=True)
 class PoseQuery:
-    """A search by pose: that of `source` at `time` seconds of its motion, or 13 `positions`.
+    """A search by pose: the pose of `source` at `time`, or the pose of 13 `positions`.
 
-    positions: (13, 3) meters in SUN_ROLES order; heading and size do not matter; places: how
-    many places of a clip may be hits; include_self: whether the queried clip may be a hit;
-    cursor: `next` of the page before.
+    time: seconds from the start of the motion; positions: (13, 3) meters, Y up, in SUN_ROLES
+    order; heading and size do not matter; places: whether a clip may be one hit or several;
+    include_self: whether the queried clip may be a hit; cursor: `next` of the page before.
     """
 
     source: QuerySource | None = None
@@ -50,11 +50,10 @@ class PoseQuery:
 
 
 def find_pose(lib: Library, query: PoseQuery) -> Hits:
-    """Clips in order of the smallest distance of their poses to a pose, with the time of that
-    pose.
+    """Clips ranked by the distance of their nearest pose to the queried pose.
 
-    The query clip is left out unless `include_self`. Raises BadField, ClipNotFound,
-    ClipNotReady, and BadContent for a file that cannot be used.
+    The query clip is left out unless `include_self`. Each hit has the time of its pose. Raises
+    BadField, ClipNotFound, ClipNotReady, and BadContent for a file that cannot be used.
     """
     began = time.perf_counter()
     clip_filter, places = as_filter(query.filter), _places(query.places)
@@ -76,31 +75,31 @@ def find_pose(lib: Library, query: PoseQuery) -> Hits:
 
 
 def _pose(lib: Library, query: PoseQuery) -> FloatArray:
-    """(36,) vector of the pose that is asked for."""
+    """(36,) vector of the queried pose."""
     if query.positions is not None:
         return _given_pose(query, query.positions)
     if query.source is None:
         raise fields.bad_field("positions", "give a clip_id and a time, or 13 positions")
     if query.time is None:
-        raise fields.bad_field("time", "must be given: the seconds at which the pose is taken")
-    found = describe(lib, query.source, (POSITIONS,))
-    positions = found.arrays[POSITIONS]
-    duration = found.clip.duration if found.clip is not None else None
+        raise fields.bad_field("time", "must be given: the time of the pose, in seconds")
+    described = describe(lib, query.source, (POSITIONS,))
+    positions = described.arrays[POSITIONS]
+    duration = described.clip.duration if described.clip is not None else None
     return pose_at(positions, query.time, duration or len(positions) / ANALYSIS_RATE)
 
 
 def _given_pose(query: PoseQuery, positions: Sequence[Sequence[Any]]) -> FloatArray:
-    """The pose of 13 positions, which stand alone."""
+    """(36,) vector of 13 positions. Raises BadField if the query also has a clip or a time."""
     if query.source is not None:
         name = "content" if query.source.clip_id is None else "clip_id"
-        raise fields.bad_field(name, "does not go with positions")
+        raise fields.bad_field(name, "cannot be used together with positions")
     if query.time is not None:
-        raise fields.bad_field("time", "does not go with positions")
+        raise fields.bad_field("time", "cannot be used together with positions")
     return pose_of(positions)
 
 
 def _match(hit: PoseHit) -> Match:
-    """A hit of a pose search as the match of a page."""
+    """A ranked pose of a clip as the match of a page."""
     distance, key = hit.key
     return Match(hit.clip_id, key, distance, hit.match.start, hit.match.end, hit.match.time)
 

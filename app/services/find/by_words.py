@@ -19,13 +19,13 @@ from app.search.index.model_rows import ModelRowsView
 from app.search.ranking.ranking import Ranking
 from app.services.library.fitted_models import Fitted
 from app.services.library.library import Library
-from app.services.library.precomputed_rows import OUTPUTS, POINTS, read_known
+from app.services.library.precomputed_rows import OUTPUTS, POINTS, read_precomputed
 from app.store.clips.filter import ClipFilter
 
 STATISTICS = "symbol_statistics"
 WORD_MODES = ("default", "cca")
 MIN_PROBABILITY = 0.5
-"""Probability from which a clip without words is taken to carry a word."""
+"""A clip without words counts as carrying a word if the probability is at least this."""
 
 Words = Fitted[LibraryWords]
 
@@ -47,16 +47,16 @@ class WordRanking:
 def rank_by_words(
     lib: Library, texts: Sequence[str], mode: str, clip_filter: ClipFilter
 ) -> WordRanking:
-    """All clips that pass the filter and are not excluded; no clip if no word is known. The
-    index must have caught up with the library.
+    """Rank all clips that pass the filter; no clip if the model knows none of the words.
 
-    texts: words, phrases or sentences. A word with a minus leaves out the clips that carry it,
-    and clips without words that would probably carry it. If all words have a minus, clips are
-    ordered by the probability that they carry none of them, in either mode.
+    The index must have caught up with the library. texts: words, phrases or sentences. A word with
+    a minus excludes the clips that carry it, and clips without words that probably carry it. If all
+    words have a minus, clips are ranked by the probability that they carry none of them, in either
+    mode.
 
-    The score is the probability that a clip carries the words that were asked for. The distance
-    is -ln of it in mode "default", and 1 - cosine in mode "cca". Raises ModelNotFitted, and
-    NotEnoughLabels if mode "cca" could not be fitted.
+    The score is the probability that a clip carries the requested words. The distance is -ln of it
+    in mode "default", and 1 - cosine in the correlated space (Takano, sections 2.2-2.4) in mode
+    "cca". Raises ModelNotFitted, and NotEnoughLabels if mode "cca" could not be fitted.
     """
     fitted = lib.models.words(lib.store)
     asked = fitted.model.ask(texts)
@@ -71,7 +71,7 @@ def rank_by_words(
         return WordRanking(nothing, fitted.id, asked, to_score)
     mask = clips.mask(clip_filter)
     if asked.excluded:
-        mask &= ~_believed_to_carry(lib, fitted, clips, asked.excluded)
+        mask &= ~_probably_carries(lib, fitted, clips, asked.excluded)
     rows, distances = measure(lib, fitted, clips, mask, asked)
     return WordRanking(Ranking(clips.ids[rows], distances), fitted.id, asked, to_score)
 
@@ -82,8 +82,8 @@ def clip_points(lib: Library, fitted: Words, clips: LabelView) -> ModelRowsView:
         clips,
         fitted.id,
         fitted.model.space.points.shape[1],
-        partial(_place, lib, fitted.model),
-        partial(read_known, lib, fitted.id, POINTS),
+        partial(_symbol_points, lib, fitted.model),
+        partial(read_precomputed, lib, fitted.id, POINTS),
     )
 
 
@@ -94,7 +94,7 @@ def _word_scores(lib: Library, fitted: Words, clips: LabelView) -> ModelRowsView
         fitted.id,
         len(fitted.model.vocabulary),
         partial(_predict, lib, fitted.model),
-        partial(read_known, lib, fitted.id, OUTPUTS),
+        partial(read_precomputed, lib, fitted.id, OUTPUTS),
     )
 
 
@@ -106,15 +106,16 @@ def _angle_score(model: LibraryWords, asked: WordQuery, angle: float) -> float:
     return float(model.angle_scores(np.array([angle]), asked)[0])
 
 
-def _believed_to_carry(
+def _probably_carries(
     lib: Library, fitted: Words, clips: LabelView, words: Sequence[str]
 ) -> BoolArray:
-    """(n,) whether a clip carries any of `words`, or has no words at all and probably would."""
+    """(n,) whether a clip carries any of `words`; a clip without words counts if it is likely."""
     vocabulary = fitted.model.vocabulary
     columns = vocabulary.columns(words)
+    # Many clips share a set of words: `codes` (n,) is the index of each clip's set in `sets`.
     codes, sets = clips.word_sets()
-    carried: BoolArray = vocabulary.label_matrix(sets) > 0.0
-    scores = _word_scores(lib, fitted, clips).values[:, columns]
+    carried: BoolArray = vocabulary.label_matrix(sets) > 0.0  # (sets, V)
+    scores = _word_scores(lib, fitted, clips).values[:, columns]  # (n, words)
     is_likely = (scores >= MIN_PROBABILITY).any(axis=1)
     is_labeled = np.asarray(carried.any(axis=1))[codes]
     is_excluded = np.asarray(carried[:, columns].any(axis=1))[codes]
@@ -135,10 +136,11 @@ def _by_surprise(
 def _by_absence(
     lib: Library, fitted: Words, clips: LabelView, mask: BoolArray, asked: WordQuery
 ) -> tuple[IntArray, FloatArray]:
-    """As _by_surprise, but of carrying none of the excluded words."""
+    """Rows (k,), and distances (k,): -ln of the probability of carrying no excluded word."""
     model_rows = _word_scores(lib, fitted, clips)
     rows = np.flatnonzero(mask & model_rows.has_row)
     scores = model_rows.values[rows[:, None], fitted.model.vocabulary.columns(asked.excluded)]
+    # The words count as independent: -ln of the product of (1 - p) is the sum of -ln(1 - p).
     return rows, -np.log1p(-scores.astype(np.float64)).sum(axis=1)
 
 
@@ -152,7 +154,7 @@ def _by_angle(
 
 
 def _predict(lib: Library, model: LibraryWords, clip_ids: Sequence[str]) -> dict[str, FloatArray]:
-    """(V,) scores of the vocabulary's words by clip id; clips that are gone are left out."""
+    """(V,) scores of the vocabulary's words by clip id; clips without statistics are left out."""
     with lib.store.read() as tx:
         statistics = usable_arrays.get_many(tx, clip_ids, STATISTICS)
     if not statistics:
@@ -161,13 +163,15 @@ def _predict(lib: Library, model: LibraryWords, clip_ids: Sequence[str]) -> dict
     return dict(zip(statistics, predicted, strict=True))
 
 
-def _place(lib: Library, model: LibraryWords, clip_ids: Sequence[str]) -> dict[str, FloatArray]:
-    """(d,) coordinates in the symbol space by clip id; clips that are gone are left out."""
+def _symbol_points(
+    lib: Library, model: LibraryWords, clip_ids: Sequence[str]
+) -> dict[str, FloatArray]:
+    """(d,) coordinates in the symbol space by clip id; clips without a symbol are left out."""
     with lib.store.read() as tx:
-        parts = {name: usable_arrays.get_many(tx, clip_ids, name) for name in SYMBOL_ARRAYS}
-    there = [clip_id for clip_id in clip_ids if all(clip_id in part for part in parts.values())]
+        stored = {name: usable_arrays.get_many(tx, clip_ids, name) for name in SYMBOL_ARRAYS}
+    usable = [clip_id for clip_id in clip_ids if all(clip_id in rows for rows in stored.values())]
     symbols = [
-        symbol_from_arrays({name: part[clip_id] for name, part in parts.items()})
-        for clip_id in there
+        symbol_from_arrays({name: rows[clip_id] for name, rows in stored.items()})
+        for clip_id in usable
     ]
-    return dict(zip(there, model.space.place(symbols), strict=True))
+    return dict(zip(usable, model.space.place(symbols), strict=True))

@@ -31,7 +31,7 @@ _NAMES = (VECTOR, FEATURES, RHO, EPSILON)
 
 
 def find_motion(lib: Library, query: MotionQuery) -> Hits:
-    """Clips, or parts of clips, in order of their likeness to a motion.
+    """Clips, or parts of clips, the most similar to a motion first.
 
     Raises BadField, ClipNotFound, ClipNotReady, BadContent for an upload that cannot be used,
     and ModelNotFitted for a metric that is not learned yet.
@@ -79,11 +79,11 @@ _Search = Callable[[Library, MotionQuery, Method, ClipFilter], HitPage]
 
 
 def _search(query: MotionQuery, method: Method) -> _Search:
-    """How a query is searched for: by its scope and its method."""
+    """The search function for a query's scope and method."""
     if query.scope == "segments":
         return find_in_segments
     if query.segment is not None:
-        raise fields.bad_field("segment", "goes with scope segments")
+        raise fields.bad_field("segment", "needs scope segments")
     if query.scope == "windows":
         return find_in_windows
     return _by_metric if method in LEARNED else _by_example

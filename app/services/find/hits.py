@@ -1,4 +1,4 @@
-"""What searches answer with: hits, a page at a time."""
+"""The results of searches: pages of hits."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from app.store.clips.record import ClipRecord
 class Hit:
     """One clip, or one part of a clip, that was found.
 
-    rank: from 1; score: 0..1, higher is closer, falls strictly with distance;
-    start, end: seconds, the part of the clip that was found (all of it with scope "clips");
-    time: seconds, of the nearest pose in a search by pose.
+    rank: from 1; score: 0..1, higher is closer, and lower for each larger distance; distance: its
+    unit depends on the method; start, end: seconds, the part of the clip that was found (the whole
+    clip with scope "clips"); time: seconds, of the nearest pose in a search by pose.
     """
 
     rank: int
@@ -30,10 +30,10 @@ class Hit:
 class Hits:
     """One page of a ranking.
 
-    method: how it was ranked; took_ms: milliseconds; library_version: of the library that was
-    searched; next: cursor of the following page, None after the last one;
-    unknown_words: words of a word search that the model does not know;
-    expanded: known words that were used in place of unknown ones, by unknown word.
+    method: the method of the ranking; took_ms: milliseconds; library_version: of the library that
+    was searched; next: cursor of the following page, None after the last one; unknown_words: words
+    of a search by words that the model does not know; expanded: words that replaced an unknown
+    word, by unknown word.
     """
 
     method: str
@@ -54,5 +54,5 @@ class HitPage:
 
 
 def milliseconds_since(began: float) -> float:
-    """Milliseconds since a reading of `time.perf_counter`."""
+    """Milliseconds since `began`, an earlier value of `time.perf_counter`."""
     return (time.perf_counter() - began) * 1000.0

@@ -1,4 +1,4 @@
-"""Find a motion among the segments of all clips: which segment is danced in the same way."""
+"""Find a motion among the segments of all clips: the segments that are most similar to it."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ from app.store.clips.filter import ClipFilter
 
 RANKED_BY = Method.VECTOR
 METHODS = (Method.FUSED, RANKED_BY)
-"""Both compare the segments' vectors: time warping finds no more in motions that are cut at
-their keyposes."""
+"""Both compare the vectors of segments. Time warping does not improve the ranking of motions that
+are cut at their keyposes."""
 SCORE_SCALE = 1.0
 """Distance at which the score is one half: about that of two segments of one task."""
 
@@ -38,21 +38,20 @@ SCORE_SCALE = 1.0
 def find_in_segments(
     lib: Library, query: MotionQuery, method: Method, clip_filter: ClipFilter
 ) -> HitPage:
-    """Segments of clips in order of their likeness to a motion, or to a segment of a stored
-    clip. The index of clips must have caught up with the library.
+    """Segments of clips, the most similar to a motion or to a segment of a stored clip first.
 
-    Raises BadField, ClipNotFound, ClipNotReady, and BadContent for an upload that cannot be
-    used.
+    The index of clips must have caught up with the library. Raises BadField, ClipNotFound,
+    ClipNotReady, and BadContent for an upload that cannot be used.
     """
     if method not in METHODS:
         known = ", ".join(METHODS)
         raise fields.bad_field("method", f"with scope segments it must be one of {known}")
     if query.segment is None:
-        vector, own = _motion_as_segment(lib, query.source)
+        vector, queried = _motion_as_segment(lib, query.source)
     else:
-        vector, own = _stored_segment(lib, query.source, query.segment)
-    excluded = None if query.include_self else own
-    question = cursors.digest("segments", own, vector.tobytes().hex(), clip_filter, excluded)
+        vector, queried = _stored_segment(lib, query.source, query.segment)
+    excluded = None if query.include_self else queried
+    question = cursors.digest("segments", queried, vector.tobytes().hex(), clip_filter, excluded)
     paging = Paging.at(query.cursor, question)
     candidates = _candidates(lib, vector, clip_filter, excluded)
     found, more = merge_overlapping(candidates, query.limit, paging.after)
@@ -63,7 +62,7 @@ def find_in_segments(
 def _motion_as_segment(
     lib: Library, source: QuerySource
 ) -> tuple[FloatArray, ExcludedInterval | None]:
-    """The vector of a motion taken as one segment, and where it lies in a stored clip."""
+    """The vector of a whole motion as one segment, and its interval in a stored clip."""
     query = describe(lib, source, (FEATURES,))
     span = np.array([[0.0, query.seconds]])
     return segment_vectors(query.arrays[FEATURES], span)[0], query.interval
@@ -72,12 +71,13 @@ def _motion_as_segment(
 def _stored_segment(
     lib: Library, source: QuerySource, segment: int
 ) -> tuple[FloatArray, ExcludedInterval]:
-    """The vector of a segment of a stored clip, and where it lies."""
+    """The vector of a segment of a stored clip, and its interval."""
     if source.clip_id is None:
-        raise fields.bad_field("segment", "goes with a stored clip, not with an uploaded file")
+        raise fields.bad_field("segment", "is for a stored clip, not for an uploaded file")
     for name in ("start", "end"):
         if getattr(source, name) is not None:
-            raise fields.bad_field(name, "does not go with segment, which has its own")
+            message = "cannot be used together with segment, which has its own start and end"
+            raise fields.bad_field(name, message)
     found = segment_arrays(lib, ready_clip(lib, source.clip_id))
     spans = found[SEGMENT_SPANS]
     if not 0 <= segment < len(spans):
@@ -89,24 +89,26 @@ def _stored_segment(
 
 
 def _candidates(
-    lib: Library, vector: FloatArray, wanted: ClipFilter, excluded: ExcludedInterval | None
+    lib: Library, vector: FloatArray, clip_filter: ClipFilter, excluded: ExcludedInterval | None
 ) -> Candidates:
-    """All segments that are meant, with their distances."""
+    """All segments of the clips that pass the filter, with their distances to `vector`."""
     lib.segments.catch_up(lib.store)
-    parts = Parts.of(lib.segments.state[1], wanted)
-    apart = parts.distances(vector[None])[0].astype(float)
-    kept = np.flatnonzero(~_touching(parts, excluded))
+    parts = Parts.of(lib.segments.state[1], clip_filter)
+    distances = parts.distances(vector[None])[0].astype(float)
+    rows = np.flatnonzero(~_overlaps(parts, excluded))
     return Candidates(
-        parts.ids, parts.owners[kept], parts.starts[kept], parts.ends[kept], apart[kept]
+        parts.ids, parts.owners[rows], parts.starts[rows], parts.ends[rows], distances[rows]
     )
 
 
-def _touching(parts: Parts, excluded: ExcludedInterval | None) -> BoolArray:
-    """(n,) whether a segment overlaps what is excluded; the next one, which only touches it, does
-    not."""
+def _overlaps(parts: Parts, excluded: ExcludedInterval | None) -> BoolArray:
+    """(n,) whether a segment overlaps the excluded interval.
+
+    The segments before and after the interval only touch it, and do not overlap it.
+    """
     if excluded is None:
         return np.zeros(len(parts), dtype=bool)
-    owned = (parts.ids == excluded.clip_id)[parts.owners]
-    # the ends are float32, times that a client sends are not
-    inside = (parts.starts + 1e-3 < excluded.end) & (parts.ends - 1e-3 > excluded.start)
-    return np.asarray(owned & inside)
+    is_same_clip = (parts.ids == excluded.clip_id)[parts.owners]
+    # 1 ms of tolerance: stored times are float32, and a client's times are rounded differently.
+    is_inside = (parts.starts + 1e-3 < excluded.end) & (parts.ends - 1e-3 > excluded.start)
+    return np.asarray(is_same_clip & is_inside)

@@ -1,4 +1,4 @@
-"""Find a motion inside clips: which part of which clip is like it."""
+"""Find a motion inside clips: the parts of clips that are most similar to it."""
 
 from __future__ import annotations
 
@@ -25,17 +25,16 @@ from app.services.library.library import Library
 from app.store.clips.filter import ClipFilter
 
 MAX_SECONDS = 120.0
-"""Of a query in windows. A longer motion is a clip of its own, and found as one."""
+"""Longest query in windows, in seconds. Search for a longer motion with scope "clips"."""
 
 
 def find_in_windows(
     lib: Library, query: MotionQuery, method: Method, clip_filter: ClipFilter
 ) -> HitPage:
-    """Parts of clips in order of their likeness to a motion. The index of clips must have
-    caught up with the library.
+    """Parts of clips, the most similar to a motion first.
 
-    Raises BadField, ClipNotFound, ClipNotReady, and BadContent for an upload that cannot be
-    used.
+    The index of clips must have caught up with the library. Raises BadField, ClipNotFound,
+    ClipNotReady, and BadContent for an upload that cannot be used.
     """
     if method not in WINDOW_SCORES:
         known = ", ".join(WINDOW_SCORES)
@@ -56,8 +55,8 @@ def find_in_windows(
 
 
 def matches_of(found: Sequence[FoundInterval]) -> list[Match]:
-    """Parts of clips as the matches of a page."""
-    return [Match(p.clip_id, p.key, p.distance, p.start, p.end) for p in found]
+    """The found parts of clips, as the matches of a page."""
+    return [Match(part.clip_id, part.key, part.distance, part.start, part.end) for part in found]
 
 
 def _rank(
@@ -72,21 +71,22 @@ def _rank(
     if method is Method.DTW:
         clips = lib.index.candidates(clip_filter)
         return by_warping(clips.ids, clips.seconds, query_segment, excluded, load), None
-    view = partial(_view, lib, clip_filter)
+    windows = partial(_windows, lib, clip_filter)
     if method is Method.VECTOR:
-        return by_windows(view, query_segment, excluded), None
-    return by_both(view, query_segment, excluded, load, anchor)
+        return by_windows(windows, query_segment, excluded), None
+    return by_both(windows, query_segment, excluded, load, anchor)
 
 
-def _view(lib: Library, wanted: ClipFilter, scale: WindowScale) -> Parts:
+def _windows(lib: Library, clip_filter: ClipFilter, scale: WindowScale) -> Parts:
+    """All windows of one scale, of the clips that pass the filter."""
     index = lib.windows[scale.name]
     index.catch_up(lib.store)
-    return Parts.of(index.state[1], wanted)
+    return Parts.of(index.state[1], clip_filter)
 
 
 def _query_segment(query: QueryDescriptors) -> QuerySegment:
     seconds = query.seconds
     if seconds > MAX_SECONDS:
-        most = f"{MAX_SECONDS:g} s are the most that is looked for in windows"
-        raise fields.bad_field("end", f"{most}; start and end leave {seconds:.1f} s")
+        limit = f"a search in windows takes at most {MAX_SECONDS:g} s"
+        raise fields.bad_field("end", f"{limit}; start and end select {seconds:.1f} s")
     return QuerySegment(query.arrays[FEATURES], seconds)

@@ -1,9 +1,9 @@
 """A map of all motions: every ready clip is a point, and similar clips are near each other.
 
 Space "symbols" is the motion symbol space (Takano, section 2.1). The map shows its ten dimensions
-along the principal axes of the model's landmarks. They stay the same until the next fit, and a
-new clip is placed at once. Space "vectors" is that of the motion vectors, along their own
-principal axes.
+along the principal axes of the model's landmarks. The axes stay the same until the next fit, and a
+new clip gets its point at once. Space "vectors" is the space of the motion vectors; the map shows
+it along their own principal axes.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Map:
 
     points: (n, dimensions), one row for each clip; kept: share of the space's variance that the
     map shows, 0..1; total: number of ready clips that pass the filter, of which n are shown;
-    model: id of the model that placed them, None for vectors.
+    model: id of the model that computed them, None for vectors.
     """
 
     clips: tuple[ClipRecord, ...]
@@ -56,10 +56,11 @@ def draw_map(
     clip_filter: ClipFilter | None = None,
     limit: int = 10_000,
 ) -> Map:
-    """The map of the clips that pass a filter. If there are more than `limit`, it shows as many,
-    evenly spaced in the order of ids.
+    """The map of the clips that pass a filter.
 
-    Raises BadField, and ModelNotFitted for symbols before the first fit.
+    dimensions: 2 or 3; limit: largest number of points. If more clips pass, the map shows `limit`
+    of them, evenly spaced in the order of ids. Raises BadField, and ModelNotFitted for space
+    "symbols" before the first fit.
     """
     if space not in SPACES:
         raise fields.bad_field("space", f"must be one of {', '.join(SPACES)}")
@@ -68,55 +69,61 @@ def draw_map(
     if not 1 <= limit <= MAX_POINTS:
         raise fields.bad_field("limit", f"must be from 1 to {MAX_POINTS}")
     version = lib.index.catch_up(lib.store)
-    every = lib.index.state[1].labels
-    passed = np.flatnonzero(every.mask(clip_filter or ClipFilter()))
-    by_id = passed[np.argsort(every.ids[passed].astype(str), kind="stable")]
-    picked = by_id[_evenly(len(by_id), limit)]
-    ids, points, axes, model = _placed(lib, space, every, picked, dimensions)
-    seen = axes.project(points) if len(ids) else np.zeros((0, dimensions))
+    labels = lib.index.state[1].labels
+    matching = np.flatnonzero(labels.mask(clip_filter or ClipFilter()))
+    # By id, and not by row: then the same clips are selected after the index was built again.
+    by_id = matching[np.argsort(labels.ids[matching].astype(str), kind="stable")]
+    selected = by_id[_evenly(len(by_id), limit)]
+    ids, points, axes, model = _space_points(lib, space, labels, selected, dimensions)
+    shown = axes.project(points) if len(ids) else np.zeros((0, dimensions))
     with lib.store.read() as tx:
         records = clips.get_many(tx, ids)
+    # A clip may have been deleted since the index caught up.
     rows = [row for row, clip_id in enumerate(ids) if clip_id in records]
     return Map(
         clips=tuple(records[ids[row]] for row in rows),
-        points=_padded(seen[rows], dimensions),
-        kept=_share(points - axes.center, seen) if len(ids) else 0.0,
-        total=len(passed),
+        points=_padded(shown[rows], dimensions),
+        kept=_variance_share(points - axes.center, shown) if len(ids) else 0.0,
+        total=len(matching),
         library_version=version,
         model=model,
     )
 
 
-def _placed(
-    lib: Library, space: str, every: LabelView, picked: IntArray, dimensions: int
+def _space_points(
+    lib: Library, space: str, labels: LabelView, selected: IntArray, dimensions: int
 ) -> tuple[list[str], FloatArray, PrincipalAxes, str | None]:
-    """Of the picked clips that still exist: ids, points (n, d), the axes to show them along, and
-    the id of the model (None for vectors)."""
+    """The points of the selected clips that have one.
+
+    Returns ids (n), points (n, d), the axes of the map, and the id of the model (None for vectors).
+    """
     if space == "symbols":
         fitted = lib.models.words(lib.store)
         axes = principal_axes(fitted.model.space.points, dimensions)
-        model_rows = clip_points(lib, fitted, every)
-        known = picked[model_rows.has_row[picked]]
-        return [str(i) for i in every.ids[known]], model_rows.values[known], axes, fitted.id
-    ids = [str(i) for i in every.ids[picked]]
+        model_rows = clip_points(lib, fitted, labels)
+        rows = selected[model_rows.has_row[selected]]
+        return [str(i) for i in labels.ids[rows]], model_rows.values[rows], axes, fitted.id
+    ids = [str(i) for i in labels.ids[selected]]
     with lib.store.read() as tx:
-        found = usable_arrays.get_many(tx, ids, VECTOR)
-    there = [clip_id for clip_id in ids if clip_id in found]
-    points = np.array([found[clip_id] for clip_id in there], dtype=np.float64)
-    if not there:
+        vectors = usable_arrays.get_many(tx, ids, VECTOR)
+    usable = [clip_id for clip_id in ids if clip_id in vectors]
+    points = np.array([vectors[clip_id] for clip_id in usable], dtype=np.float64)
+    if not usable:
         return [], points, PrincipalAxes(np.zeros(0), np.zeros((0, 0))), None
-    return there, points, principal_axes(points, dimensions), None
+    return usable, points, principal_axes(points, dimensions), None
 
 
 def _evenly(count: int, limit: int) -> IntArray:
+    """At most `limit` indexes of `count`, evenly spaced."""
     return np.linspace(0, count - 1, min(count, limit)).round().astype(np.int64)
 
 
-def _share(centred: FloatArray, seen: FloatArray) -> float:
-    whole = float(np.square(centred).sum())
-    return float(np.square(seen).sum()) / whole if whole > 0 else 1.0
+def _variance_share(centered: FloatArray, shown: FloatArray) -> float:
+    """The share 0..1 of the variance of points (n, d) that their projections (n, 2 or 3) keep."""
+    whole = float(np.square(centered).sum())
+    return float(np.square(shown).sum()) / whole if whole > 0 else 1.0
 
 
 def _padded(points: FloatArray, dimensions: int) -> FloatArray:
-    """Zeros added for dimensions that so few clips do not span."""
+    """The points with zeros for missing dimensions: two clips span only one dimension."""
     return np.pad(points, ((0, 0), (0, dimensions - points.shape[1])))

@@ -17,8 +17,8 @@ from app.store.clips.record import ClipRecord
 class Match:
     """An entry of a ranking, before its clip is read.
 
-    key: orders matches of the same distance, and names one in a cursor; start, end: seconds, the
-    part that was found; end None: the clip's end; time: as in `Hit`.
+    key: sorts matches of the same distance, and identifies a match in a cursor; start, end:
+    seconds, the part that was found; end None: the clip's end; time: as in `Hit`.
     """
 
     clip_id: str
@@ -40,9 +40,9 @@ class MatchPage:
 
 @dataclass(frozen=True, slots=True)
 class Paging:
-    """Which page of a ranking is asked for.
+    """The requested page of a ranking.
 
-    question: digest of what is asked, which binds a cursor to it; after: the last hit of the page
+    question: digest of the query, which binds a cursor to it; after: the last hit of the page
     before, None for the first page.
     """
 
@@ -51,7 +51,7 @@ class Paging:
 
     @classmethod
     def at(cls, cursor: str | None, question: str) -> Paging:
-        """The page at a client's cursor. Raises BadField where it belongs to another question."""
+        """The page at a client's cursor. Raises BadField if the cursor is of another query."""
         return cls(question, None if cursor is None else cursors.decode(cursor, question))
 
     @property

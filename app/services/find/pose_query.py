@@ -1,4 +1,4 @@
-"""The pose that a search asks for: that of a motion at a time, or 13 positions from a client."""
+"""The query of a search by pose: the pose of a motion at a time, or 13 positions from a client."""
 
 from __future__ import annotations
 
@@ -18,9 +18,10 @@ from app.numerics.arrays import FloatArray
 from app.services import fields
 
 MAX_COORDINATE = 1e6
-"""Meters. A coordinate beyond it is a mistake."""
+"""Meters. A larger coordinate is a mistake of the client."""
 
 _WHOLE_FRAME = 1e-6
+"""Frames. A time nearer than this to a frame is the time of the frame, in spite of rounding."""
 _ORDER = ", ".join(SUN_ROLES)
 
 
@@ -43,7 +44,7 @@ def pose_at(positions: FloatArray, time: float, duration: float) -> FloatArray:
 
 
 def pose_of(positions: Sequence[Sequence[Any]]) -> FloatArray:
-    """(36,) vector of 13 positions in SUN_ROLES order, any unit.
+    """(36,) vector of a pose: 13 positions (x, y, z) in SUN_ROLES order, Y up, in any unit.
 
     Raises BadField, which names every joint that cannot be used.
     """
@@ -76,18 +77,19 @@ def _problem(point: Any) -> str | None:
 
 
 def _without_a_body(points: FloatArray) -> list[Place]:
-    """Why finite positions are not a pose."""
+    """The reasons why finite positions (13, 3) have no pose vector."""
     if (points == points[0]).all():
-        return [Place("positions", "all joints are in one place: the body has no size")]
+        return [Place("positions", "all joints have the same position: the body has no size")]
     places = []
     for left, right in SIDES:
-        one, other = SUN_ROLES.index(left), SUN_ROLES.index(right)
-        if np.hypot(*(points[one] - points[other])[[0, 2]]) < 1e-6:
-            message = f"{left} is where {right} is, seen from above: there is no left and right"
-            places.append(Place(f"positions.{one}", message))
+        left_joint, right_joint = SUN_ROLES.index(left), SUN_ROLES.index(right)
+        # The heading comes from the horizontal direction (x, z) from a left joint to a right one.
+        if np.hypot(*(points[left_joint] - points[right_joint])[[0, 2]]) < 1e-6:
+            message = f"{left} and {right} have the same x and z: the body has no left and right"
+            places.append(Place(f"positions.{left_joint}", message))
     if len(places) == len(SIDES):
         return places
-    message = "hips, neck, head, knees and feet are in one place: the body has no size"
+    message = "hips, neck, head, knees and feet have the same position: the body has no size"
     return [Place("positions", message)]
 
 

@@ -1,4 +1,4 @@
-"""What a client asks a search for."""
+"""The queries of searches by example and by words."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ DEFAULT_LIMIT = 10
 SCOPES = ("clips", "windows", "segments")
 
 Filter = ClipFilter | Mapping[str, Any] | None
-"""A filter that was checked, or the conditions as a client sent them, or none."""
+"""A checked filter, or the conditions as a client sent them, or no filter."""
 
 
 @dataclass(frozen=True, slots=True)
 class MotionQuery:
     """A search by example.
 
-    scope: "clips" compares whole clips; "windows" finds parts of clips, wherever they lie in a
-    clip; "segments" finds motions from one keypose to the next. segment: with that scope, the
-    index of the queried clip's segment that is the query. limit: 1 to 1,000 hits; include_self:
-    whether the query itself may be a hit; cursor: `next` of the page before.
+    scope: "clips" compares whole clips; "windows" finds parts of clips, at any time in a clip;
+    "segments" finds motions from one keypose to the next. segment: only with scope "segments", the
+    index of a segment of the queried clip, which is then the query. limit: 1 to 1,000 hits;
+    include_self: whether the query itself may be a hit; cursor: `next` of the page before.
     """
 
     source: QuerySource
@@ -41,8 +41,8 @@ class MotionQuery:
 class WordQuery:
     """A search by words: mode "default" (kernel ridge) or "cca" (Takano's correlated space).
 
-    words: words, phrases or sentences; a word with a minus before it (-left) leaves out the
-    clips that carry it.
+    words: words, phrases or sentences; a word with a minus before it (-left) excludes the clips
+    that carry it.
     """
 
     words: Sequence[str]

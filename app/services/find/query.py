@@ -17,7 +17,7 @@ from app.services import fields
 from app.services.find.query_source import UPLOAD_ONLY, QuerySource
 from app.services.library.analysis_pool import AnalysisRequest
 from app.services.library.library import Library
-from app.services.library.ready_clips import descriptors_of, find_ready
+from app.services.library.ready_clips import descriptors_of, read_ready_clip
 from app.services.library.stored_motion import load_motion
 from app.store.clips.record import ClipRecord
 from app.store.files.files import Readable
@@ -27,7 +27,11 @@ Arrays = Mapping[str, FloatArray]
 
 @dataclass(frozen=True, slots=True)
 class QueryDescriptors:
-    """What is computed of a query: descriptors by name; clip: the stored clip, if it is one."""
+    """The descriptors of a query.
+
+    arrays: descriptors by name, see `app.analysis.array_shapes`; clip: the queried clip, None for
+    an upload.
+    """
 
     source: QuerySource
     arrays: Arrays
@@ -35,7 +39,7 @@ class QueryDescriptors:
 
     @property
     def seconds(self) -> float:
-        """The duration of the part that is meant."""
+        """The duration of the selected part, in seconds."""
         start, end = self.source.start or 0.0, self.source.end
         if end is not None:
             return end - start
@@ -46,7 +50,7 @@ class QueryDescriptors:
 
     @property
     def interval(self) -> ExcludedInterval | None:
-        """Where the part that is meant lies in a stored clip; None for an upload."""
+        """The selected part of a stored clip, in seconds; None for an upload."""
         if self.clip is None:
             return None
         start = self.source.start or 0.0
@@ -54,10 +58,10 @@ class QueryDescriptors:
 
 
 def describe(lib: Library, source: QuerySource, names: tuple[str, ...]) -> QueryDescriptors:
-    """The named descriptors of a query. Nothing of an upload is stored.
+    """The named descriptors of a query. An upload is not stored.
 
-    Raises BadField, ClipNotFound, ClipNotReady, TooLarge, and BadContent for an upload that
-    cannot be used.
+    names: keys of `app.analysis.array_shapes.SHAPES`. Raises BadField, ClipNotFound, ClipNotReady,
+    TooLarge, and BadContent for an upload that cannot be used.
     """
     if (source.clip_id is None) == (source.content is None):
         places = [Place("clip_id", "exactly one of clip_id and file must be given")]
@@ -69,9 +73,9 @@ def describe(lib: Library, source: QuerySource, names: tuple[str, ...]) -> Query
 
 
 def analysis_request(source: QuerySource, max_bytes: int) -> AnalysisRequest:
-    """The analysis of an uploaded query; reads the upload.
+    """The analysis of an uploaded query; reads the upload into memory.
 
-    max_bytes: the most that each of its files may have. Raises BadField, EmptyFile, TooLarge.
+    max_bytes: upper limit for each of its files. Raises BadField, EmptyFile, TooLarge.
     """
     skeleton = source.skeleton
     return AnalysisRequest(
@@ -86,16 +90,21 @@ def analysis_request(source: QuerySource, max_bytes: int) -> AnalysisRequest:
 
 
 def cut(motion: Motion, start: float | None, end: float | None) -> Motion:
-    """The frames of `motion` from `start` to `end` seconds; raises BadField outside of it."""
-    first = 0.0 if start is None else start
-    last = motion.duration if end is None else end
-    if first >= motion.duration:
+    """The frames of `motion` from `start` to `end` seconds, at least one frame.
+
+    Raises BadField if the part is outside of the motion.
+    """
+    start_s = 0.0 if start is None else start
+    end_s = motion.duration if end is None else end
+    if start_s >= motion.duration:
         raise fields.bad_field("start", f"must be below the duration, {motion.duration:.3f} s")
-    if last > motion.duration + 1.0 / motion.frame_rate:
+    # One frame more is allowed, since clients round durations.
+    if end_s > motion.duration + 1.0 / motion.frame_rate:
         raise fields.bad_field("end", f"must not be beyond the duration, {motion.duration:.3f} s")
-    begin = math.floor(first * motion.frame_rate + 1e-6)
-    stop = max(begin + 1, math.ceil(last * motion.frame_rate - 1e-6))
-    return replace(motion, positions=np.ascontiguousarray(motion.positions[begin:stop]))
+    # 1e-6: a time that is exactly on a frame must not fall to its neighbor by rounding.
+    first = math.floor(start_s * motion.frame_rate + 1e-6)
+    stop = max(first + 1, math.ceil(end_s * motion.frame_rate - 1e-6))
+    return replace(motion, positions=np.ascontiguousarray(motion.positions[first:stop]))
 
 
 def _describe_clip(
@@ -103,9 +112,9 @@ def _describe_clip(
 ) -> QueryDescriptors:
     for name in UPLOAD_ONLY:
         if getattr(source, name) not in (None, ""):
-            raise fields.bad_field(name, "goes with an uploaded file, not with a stored clip")
+            raise fields.bad_field(name, "is for an uploaded file, not for a stored clip")
     with lib.store.read() as tx:
-        clip = find_ready(tx, clip_id)
+        clip = read_ready_clip(tx, clip_id)
         if source.is_whole:
             return QueryDescriptors(source, descriptors_of(tx, clip, names), clip)
     part = cut(load_motion(lib, clip), source.start, source.end)
@@ -113,10 +122,10 @@ def _describe_clip(
 
 
 def _describe_upload(lib: Library, source: QuerySource, names: tuple[str, ...]) -> Arrays:
-    found = lib.pool.analyze(analysis_request(source, lib.settings.max_upload_bytes))
+    analysis = lib.pool.analyze(analysis_request(source, lib.settings.max_upload_bytes))
     if source.is_whole:
-        return found.arrays
-    return _described(cut(found.motion, source.start, source.end), names)
+        return analysis.arrays
+    return _described(cut(analysis.motion, source.start, source.end), names)
 
 
 def _described(motion: Motion, names: tuple[str, ...]) -> Arrays:
@@ -128,12 +137,13 @@ def _described(motion: Motion, names: tuple[str, ...]) -> Arrays:
 
 
 def _read(content: Readable | None, max_bytes: int) -> bytes:
-    found = content.read(max_bytes + 1) if content is not None else b""
-    if not found:
+    # One byte more than the limit shows that the file is too large.
+    data = content.read(max_bytes + 1) if content is not None else b""
+    if not data:
         raise EmptyFile()
-    if len(found) > max_bytes:
+    if len(data) > max_bytes:
         raise TooLarge(f"The file is larger than {max_bytes} bytes.")
-    return found
+    return data
 
 
 def _check_part(source: QuerySource) -> None:

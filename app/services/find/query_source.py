@@ -1,4 +1,4 @@
-"""The motion that a search or a recognition asks about."""
+"""The motion of a query, for searches and recognition."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ UPLOAD_ONLY = ("skeleton", "frame_rate", "unit", "roles", "stack")
 
 @dataclass(frozen=True, slots=True)
 class QuerySource:
-    """A stored clip or an uploaded file, the part of it that is meant, and the client's hints.
+    """A stored clip or an uploaded file, the selected part of it, and the client's hints.
 
     Exactly one of `clip_id` and `content` must be given; `describe` checks it.
 
-    start, end: seconds, the part that is meant; None is the motion's own start or end.
+    start, end: seconds, the selected part; None is the motion's own start or end.
     skeleton: the ASF file that an AMC file needs; frame_rate: Hz; unit: a name, or meters in one
     unit; roles: joint names by role; stack: the animation stack of an FBX file.
     """
@@ -36,7 +36,7 @@ class QuerySource:
 
     @property
     def is_whole(self) -> bool:
-        """Whether all of the motion is meant."""
+        """Whether the whole motion is selected."""
         return self.start is None and self.end is None
 
     def excluded_clips(self, *, include_self: bool) -> frozenset[str]:

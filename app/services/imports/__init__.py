@@ -1,1 +1,1 @@
-"""Many files at once."""
+"""Imports of many files at once, from an archive or a folder."""

@@ -19,7 +19,7 @@ from app.services import fields
 from app.services.clips.catalogue import WORKER_DEATHS
 from app.services.imports.manifest_table import ManifestLimits
 from app.services.imports.plan import Plan
-from app.services.imports.register import Progress, Registering
+from app.services.imports.register import ImportRun, Progress
 from app.services.imports.skeleton_pairs import pair_skeletons
 from app.services.imports.sources import (
     ArchiveLimits,
@@ -78,35 +78,35 @@ def unpack(
 ) -> None:
     """Do a claimed import: register its files, then leave the job to its clips' ingests.
 
-    Where other imports wait, it stops after its turn and gives the job back, to go on later.
-    `should_stop` is asked before each file; then Canceled is raised, and what was registered
-    stays. Raises BadContent or TooLarge where the archive as a whole cannot be used,
-    LeaseLost where the job was given to another worker.
+    If other imports wait, it stops after its turn: the job returns to the queue and continues
+    later. If `should_stop` returns True before a file, it raises Canceled; the clips that exist
+    already stay. Raises BadContent or TooLarge if the archive as a whole cannot be used, and
+    LeaseLost if another worker has the job now.
     """
     if claimed.file_sha256 is None:
         raise BadContent("The command that imported these files was interrupted: run it again.")
     began = time.monotonic()
     archive = lib.store.files.path(claimed.file_sha256)
     with archive_files(archive, _limits(lib)) as files:
-        doing = Registering(lib, claimed.lease, _plan(lib, files))
+        run = ImportRun(lib, claimed.lease, _plan(lib, files))
         turn = _Turn(lib, max(TURN_S, time.monotonic() - began))
-        if doing.run(progress, should_stop, turn.is_over):
-            doing.finish(WAITING)
+        if run.run(progress, should_stop, turn.is_over):
+            run.finish(WAITING)
         else:
-            _give_turn(doing)
+            _give_turn(run)
 
 
 def import_path(lib: Library, path: Path, progress: Progress | None = None) -> JobRecord:
     """Import a folder, a ZIP or a single file from this machine's disk.
 
-    Returns the import's job once every file is registered; it ends when a worker has analyzed
-    the clips. Raises NotFound where there is no such path, and as `unpack` does.
+    Returns the job of the import after every file was registered. The job ends when a worker has
+    analyzed the clips. Raises NotFound if the path does not exist, and the errors of `unpack`.
     """
     with _sources(lib, path) as files:
         plan = _plan(lib, files)
-        doing = Registering(lib, _own_job(lib, path).lease, plan)
-        doing.run(progress or (lambda *_: None), lambda: False, lambda: False)
-        return doing.finish(WAITING)
+        run = ImportRun(lib, _own_job(lib, path).lease, plan)
+        run.run(progress or (lambda *_: None), lambda: False, lambda: False)
+        return run.finish(WAITING)
 
 
 class _Turn:
@@ -125,12 +125,10 @@ class _Turn:
             return leases.is_any_claimable(tx, [JobKind.IMPORT])
 
 
-def _give_turn(doing: Registering) -> None:
-    detail = f"{doing.done} of {doing.total} files; others go first"
-    with doing.lib.store.write() as tx:
-        stored.requeue_behind_others(
-            tx, doing.lease, doing.done / doing.total, detail, LOWEST_PRIORITY
-        )
+def _give_turn(run: ImportRun) -> None:
+    detail = f"{run.done} of {run.total} files; waiting for other imports"
+    with run.lib.store.write() as tx:
+        stored.requeue_behind_others(tx, run.lease, run.done / run.total, detail, LOWEST_PRIORITY)
 
 
 @contextmanager
@@ -156,7 +154,7 @@ def _skeleton_beside(path: Path) -> Path | None:
 
 
 def _own_job(lib: Library, path: Path) -> ClaimedJob:
-    """A job that this process has from the start; queued and claimed in one transaction."""
+    """A job of this process: queued and claimed in one transaction, so that no worker takes it."""
     job = NewJob(
         JobKind.IMPORT,
         payload={"filename": fields.file_name(str(path))},
@@ -167,12 +165,12 @@ def _own_job(lib: Library, path: Path) -> ClaimedJob:
         created = jobs.enqueue(tx, job)
         claimed = leases.claim(tx, [JobKind.IMPORT], owners.new_owner("import"))
         if claimed is None or claimed.job.id != created.id:
-            raise StorageError("Another import begins at this moment; try again.")
+            raise StorageError("Another import started at the same moment; try again.")
         return claimed
 
 
 def _plan(lib: Library, files: Sequence[SourceFile]) -> Plan:
-    # A folder of this machine may hold more files than an archive may, and a row for each.
+    # A local folder may have more files than an archive may, and one manifest row for each file.
     return Plan(files, ManifestLimits(max(lib.settings.max_archive_entries, len(files))))
 
 

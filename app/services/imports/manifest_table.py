@@ -1,7 +1,7 @@
-"""The table in a manifest, read row by row: never more of it in memory than one row.
+"""Reads the table of a manifest row by row, with at most one row in memory.
 
-Each row has limits (columns, characters), and so have all manifests of an import together (rows,
-bytes), so that a small archive cannot unpack to a table that fills the memory.
+Each row has limits (columns, characters), and all manifests of an import together have limits
+(rows, bytes). So a small archive cannot unpack to a table that fills the memory.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ from app.errors import Place, TooLarge, Unreadable
 
 MANIFEST_NAME = "manifest.csv"
 MAX_BYTES = 64 * 2**20
-"""Of all manifests of one import: 100,000 rows of 600 bytes each."""
+"""Bytes of all manifests of one import: 100,000 rows of 600 bytes each."""
 MAX_COLUMNS = 100
 MAX_ROW = 2**20
-"""Characters of one row. Python's csv module takes at most 131,072 in one field of it."""
+"""Characters of one row. Python's csv module reads at most 131,072 characters in one cell."""
 _SEPARATORS = ",;\t"
 
 
 class Readable(Protocol):
-    """Anything that gives bytes."""
+    """An open file of bytes."""
 
     def read(self, size: int, /) -> bytes:
-        """At most `size` bytes; none at the end."""
+        """The next bytes, at most `size`; empty at the end."""
         ...
 
 
@@ -40,8 +40,8 @@ class ManifestLimits:
 
 
 @dataclass(slots=True)
-class Used:
-    """How much of the limits the manifests read so far have used."""
+class ManifestUsage:
+    """The rows and bytes of all manifests that were read so far, with their limits."""
 
     limits: ManifestLimits
     rows: int = 0
@@ -49,37 +49,42 @@ class Used:
 
 
 class Columns:
-    """Where the columns of a manifest are; one object for each manifest."""
+    """The positions of a manifest's columns. Each manifest has its own object.
 
-    def __init__(self, header: Sequence[str], known: Collection[str]) -> None:
-        at = {name.strip().lower(): index for index, name in enumerate(header)}
-        self._at = at
-        self.names = tuple(name for name in known if name in at)
-        self._known = tuple(at[name] for name in self.names)
+    header: the cells of its first line; expected: names of columns to look for; names: those of
+    them that the manifest has.
+    """
+
+    def __init__(self, header: Sequence[str], expected: Collection[str]) -> None:
+        index_of = {name.strip().lower(): index for index, name in enumerate(header)}
+        self._index_of = index_of
+        self.names = tuple(name for name in expected if name in index_of)
+        self._indexes = tuple(index_of[name] for name in self.names)
 
     def __contains__(self, name: str) -> bool:
-        return name in self._at
+        return name in self._index_of
 
-    def of(self, cells: Sequence[str], name: str) -> str:
-        """The cell of a column; empty where there is none."""
-        index = self._at.get(name, len(cells))
+    def cell(self, cells: Sequence[str], name: str) -> str:
+        """The row's cell in a column; empty if there is no such column or the row is shorter."""
+        index = self._index_of.get(name, len(cells))
         return cells[index].strip() if index < len(cells) else ""
 
-    def known(self, cells: Sequence[str]) -> tuple[str, ...]:
-        """The cells of the known columns, in the order of `names`."""
+    def named_cells(self, cells: Sequence[str]) -> tuple[str, ...]:
+        """The row's cells in the columns `names`, in that order."""
         count = len(cells)
-        return tuple(cells[i].strip() if i < count else "" for i in self._known)
+        return tuple(cells[i].strip() if i < count else "" for i in self._indexes)
 
 
 def read_rows(
-    content: Readable, used: Used, known: Collection[str]
+    content: Readable, usage: ManifestUsage, expected: Collection[str]
 ) -> Iterator[tuple[Columns, int, list[str]]]:
-    """The rows that name a path: the manifest's columns, the line, and the row's cells.
+    """The rows that have a path: the columns of the manifest, the line, and the row's cells.
 
-    Counts in `used`. Raises Unreadable where it is no table of paths, TooLarge beyond a limit;
-    both name the line.
+    usage: counts the rows and bytes; expected: names of columns to look for. Raises Unreadable
+    if the content is not a table with a column of paths, and TooLarge beyond a limit; both name
+    the line.
     """
-    lines = _Lines(content, used)
+    lines = _Lines(content, usage)
     reader = csv.reader(lines, delimiter=lines.separator(), skipinitialspace=True, strict=True)
     columns: Columns | None = None
     try:
@@ -89,45 +94,45 @@ def read_rows(
             if len(cells) > MAX_COLUMNS:
                 raise _too_large(line, f"more than {MAX_COLUMNS} columns")
             if columns is None:
-                columns = Columns(cells, known)
+                columns = Columns(cells, expected)
                 if "path" not in columns:
                     break
-            elif columns.of(cells, "path"):
+            elif columns.cell(cells, "path"):
                 yield columns, line, cells
     except csv.Error as problem:
         raise _unreadable(max(reader.line_num, 1), str(problem)) from problem
     if columns is None or "path" not in columns:
-        raise _unreadable(1, "the first line must name the columns, `path` among them")
+        raise _unreadable(1, "the first line must name the columns, and one must be `path`")
 
 
-def too_long_path(line: int, most: int) -> TooLarge:
-    """The refusal of a manifest with a path of more than `most` characters."""
-    return _too_large(line, f"a path of more than {most} characters")
+def too_long_path(line: int, limit: int) -> TooLarge:
+    """The error for a manifest with a path of more than `limit` characters."""
+    return _too_large(line, f"a path of more than {limit} characters")
 
 
 class _Lines:
-    """The lines of a manifest, each checked before it is handed on."""
+    """The lines of a manifest. Each line is checked before the csv module gets it."""
 
-    def __init__(self, content: Readable, used: Used) -> None:
-        self._used = used
-        raw = io.BufferedReader(_Counted(content, used, self))
-        # surrogateescape: bytes that are no UTF-8 are found in the line that holds them.
+    def __init__(self, content: Readable, usage: ManifestUsage) -> None:
+        self._usage = usage
+        raw = io.BufferedReader(_Counted(content, usage, self))
+        # surrogateescape: so that `_next` can name the line with bytes that are not UTF-8.
         self._text = io.TextIOWrapper(raw, "utf-8-sig", errors="surrogateescape", newline="")
         self.number = 0
         self._in_row = 0
         self._first: str | None = self._next()
 
     def separator(self) -> str:
-        """What separates the cells of the first line."""
-        # Spreadsheets of many countries write semicolons; a tie is a table of one column.
+        """The separator that is most frequent in the first line; a comma if there is none."""
+        # Spreadsheet programs write semicolons in countries with a decimal comma.
         return max(_SEPARATORS, key=(self._first or "").count)
 
     def begin_row(self, *, is_counted: bool) -> None:
-        """A row is complete, the next line begins another. Blank rows count, too."""
+        """Count a complete row. The next line begins another row. Empty rows count too."""
         self._in_row = 0
-        self._used.rows += is_counted
-        if self._used.rows > self._used.limits.rows:
-            raise _too_large(self.number, f"more than {self._used.limits.rows} rows")
+        self._usage.rows += is_counted
+        if self._usage.rows > self._usage.limits.rows:
+            raise _too_large(self.number, f"more than {self._usage.limits.rows} rows")
 
     def __iter__(self) -> _Lines:
         return self
@@ -152,20 +157,20 @@ class _Lines:
 
 
 class _Counted(io.RawIOBase):
-    """The bytes of a manifest, counted as they are read."""
+    """The bytes of a manifest, counted during reading."""
 
-    def __init__(self, content: Readable, used: Used, lines: _Lines) -> None:
-        self._content, self._used, self._lines = content, used, lines
+    def __init__(self, content: Readable, usage: ManifestUsage, lines: _Lines) -> None:
+        self._content, self._usage, self._lines = content, usage, lines
 
     def readable(self) -> bool:
         return True
 
     def readinto(self, buffer: memoryview) -> int:  # type: ignore[override]
         chunk = self._content.read(len(buffer))
-        self._used.bytes += len(chunk)
-        if self._used.bytes > self._used.limits.bytes:
-            most = self._used.limits.bytes
-            raise _too_large(self._lines.number, f"more than {most} bytes of manifests")
+        self._usage.bytes += len(chunk)
+        if self._usage.bytes > self._usage.limits.bytes:
+            limit = self._usage.limits.bytes
+            raise _too_large(self._lines.number, f"more than {limit} bytes of manifests")
         buffer[: len(chunk)] = chunk
         return len(chunk)
 

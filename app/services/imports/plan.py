@@ -1,7 +1,8 @@
-"""What the files of an import are to each other: motions, and what goes with each.
+"""The plan of an import: which files are motions, and the manifest row, skeleton and recording of
+each.
 
-A manifest describes motions and names their recordings; an ASF file is the skeleton of the AMC
-files in its folder. Only manifests are read here.
+A manifest describes motions and names their recordings. An ASF file is the skeleton of the AMC
+files that `skeleton_pairs` finds for it. This module reads manifests only.
 """
 
 from __future__ import annotations
@@ -17,13 +18,13 @@ from app.services.imports.manifest_table import MANIFEST_NAME, ManifestLimits
 from app.services.imports.skeleton_pairs import pair_skeletons
 from app.services.imports.sources import SourceFile
 
-MOST_ABSENT = 100
+MAX_ABSENT_LISTED = 100
 """How many missing files of manifests are reported one by one; the others are only counted."""
 
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """A motion file of an import with what goes with it."""
+    """A motion file of an import, with its manifest row, skeleton file and recording."""
 
     file: SourceFile
     row: ManifestRow
@@ -34,13 +35,17 @@ class Item:
 class Plan:
     """What an import does with its files.
 
-    motions: the files that may become clips; absent: the problems of the first MOST_ABSENT paths
+    motions: the files that may become clips; absent: the problems of the first
+    MAX_ABSENT_LISTED paths
     that a manifest names and that are missing; absent_count: how many paths are missing.
     """
 
     def __init__(self, files: Iterable[SourceFile], limits: ManifestLimits) -> None:
-        """Sort the files. Raises Unreadable, TooLarge, and what is wrong with a manifest."""
-        self._by_path = {file.path: file for file in _each_once(files)}
+        """Sort the files into motions and their companions.
+
+        Raises Unreadable and TooLarge for a bad manifest, and a manifest file's own problem.
+        """
+        self._by_path = {file.path: file for file in _with_unique_paths(files)}
         self._manifest = _read_manifests(self._by_path.values(), limits)
         self._skeletons = pair_skeletons(self._by_path)
         recordings = self._manifest.recordings()
@@ -50,15 +55,14 @@ class Plan:
             for file in self._by_path.values()
             if not _is_manifest(file) and file.path not in taken
         )
-        named = ((path, line) for path, line in self._manifest.named())
-        absent = {path: line for path, line in named if path not in self._by_path}
+        absent = {path: line for path, line in self._manifest.named() if path not in self._by_path}
         self.absent_count = len(absent)
         self.absent = {
-            path: _absent(path, absent[path]) for path in heapq.nsmallest(MOST_ABSENT, absent)
+            path: _absent(path, absent[path]) for path in heapq.nsmallest(MAX_ABSENT_LISTED, absent)
         }
 
     def item(self, motion: SourceFile) -> Item:
-        """A motion with what goes with it."""
+        """A motion with its manifest row, skeleton and recording."""
         row = self._manifest.row(motion.path)
         skeleton = self._skeletons.get(motion.path)
         return Item(
@@ -70,7 +74,7 @@ class Plan:
 
 
 def _read_manifests(files: Iterable[SourceFile], limits: ManifestLimits) -> Manifest:
-    """What every manifest among the files says; a bad one fails the whole import."""
+    """All manifests among the files. A bad manifest fails the whole import."""
     manifest = Manifest(limits)
     for file in files:
         if _is_manifest(file):
@@ -79,7 +83,7 @@ def _read_manifests(files: Iterable[SourceFile], limits: ManifestLimits) -> Mani
 
 
 def _read_manifest(manifest: Manifest, file: SourceFile) -> None:
-    # One that is encrypted or damaged must not be passed over: its labels would be lost.
+    # An encrypted or damaged manifest must not be skipped: its labels would be lost silently.
     if file.problem is not None:
         raise file.problem
     try:
@@ -95,21 +99,23 @@ def _is_manifest(file: SourceFile) -> bool:
     return file.path.rpartition("/")[2] == MANIFEST_NAME
 
 
-def _each_once(files: Iterable[SourceFile]) -> Iterable[SourceFile]:
-    """The files with paths that are storable, and different where an archive repeats one."""
-    taken: set[str] = set()
+def _with_unique_paths(files: Iterable[SourceFile]) -> Iterable[SourceFile]:
+    """The files with paths that can be stored. A repeated path gets a number: "a.bvh (2)"."""
+    used: set[str] = set()
     count: dict[str, int] = {}
-    for given in files:
-        file = _storable(given)
+    for original in files:
+        file = _with_storable_path(original)
         path = file.path
-        while path in taken:
+        while path in used:
             count[file.path] = count.get(file.path, 1) + 1
             path = f"{file.path} ({count[file.path]})"
-        taken.add(path)
+        used.add(path)
         yield file if path == file.path else replace(file, path=path)
 
 
-def _storable(file: SourceFile) -> SourceFile:
+def _with_storable_path(file: SourceFile) -> SourceFile:
+    """The file with a path of valid Unicode; a path that is too long is cut and a problem."""
+    # A file name on disk may hold bytes that are not UTF-8; the database cannot store them.
     path = file.path.encode("utf-8", "replace").decode()
     if len(path) > MAX_PATH:
         half = MAX_PATH // 2 - 20
@@ -121,5 +127,5 @@ def _storable(file: SourceFile) -> SourceFile:
 
 
 def _absent(path: str, line: int) -> KinedexError:
-    place = Place(f"{MANIFEST_NAME} line {line}", f"{path} is not there")
-    return BadContent("The manifest names a file that is not there.", places=[place])
+    place = Place(f"{MANIFEST_NAME} line {line}", f"{path} does not exist")
+    return BadContent("The manifest names a file that does not exist.", places=[place])

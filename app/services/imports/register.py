@@ -1,7 +1,7 @@
-"""Registering the files of an import: each becomes a clip with an ingest job, or a problem.
+"""Registers the files of an import: each file becomes a clip with an ingest job, or a problem.
 
 A clip, its job and the import's record of it are stored in one transaction. Files that become no
-clip wait to be recorded together, because each transaction waits for the disk.
+clip are recorded together, because each transaction waits for the disk.
 """
 
 from __future__ import annotations
@@ -29,23 +29,23 @@ from app.store.jobs.imports import NewEntry
 from app.store.jobs.record import JobRecord, Lease
 
 Progress = Callable[[int, int, str], None]
-"""Called after each file with the number of files done, the number of all, the file's path."""
-Over = Callable[[], bool]
-"""Returns whether the import must stop now to let other imports run."""
+"""Called after each file with the number of files done, the number of all files, and the path."""
+TurnCheck = Callable[[], bool]
+"""Returns whether the import must stop now, so that other imports can run."""
 
-MOST_TOGETHER = 500
+MAX_PROBLEMS_TOGETHER = 500
 """Files without a clip that are recorded in one transaction."""
 RECORD_AFTER_S = 1.0
-"""Such files wait at most this long, so that a cancellation is noticed."""
+"""Problems wait at most this long (seconds), since a cancellation is noticed only then."""
 FIRST_CLIPS = 64
-LOWEST_STEPS = 9
-"""The clips of a large import wait for those of a small one: those after the first 64 have a
-priority lower by one step, after 128 by two, after 256 by three, up to LOWEST_STEPS."""
-JUDGED_AT_ONCE = HEAD_BYTES + TAIL_BYTES
-"""A file of at most this many bytes is checked before it is written anywhere."""
+MAX_PRIORITY_STEPS = 9
+"""The clips of a large import wait for the clips of a small import: after the first 64 clips the
+priority is one step lower, after 128 two steps, after 256 three, up to MAX_PRIORITY_STEPS."""
+MAX_CHECKED_BYTES = HEAD_BYTES + TAIL_BYTES
+"""A file of at most this size is checked before it is written to disk."""
 
 
-class Registering:
+class ImportRun:
     """A running import: its plan, and the lease of its job."""
 
     def __init__(self, lib: Library, lease: Lease, plan: Plan) -> None:
@@ -58,31 +58,33 @@ class Registering:
 
     @property
     def total(self) -> int:
-        """How many files may become clips."""
+        """The number of files that may become clips."""
         return len(self.plan.motions)
 
-    def run(self, progress: Progress, should_stop: Callable[[], bool], is_over: Over) -> bool:
-        """Register file after file; return whether all are registered.
+    def run(
+        self, progress: Progress, should_stop: Callable[[], bool], is_turn_over: TurnCheck
+    ) -> bool:
+        """Register the files one by one; returns whether all files are registered.
 
-        `should_stop` is asked before each file, and then Canceled is raised; `is_over` after
-        each, and then False is returned. Raises LeaseLost and StorageError, too.
+        If `should_stop` returns True before a file, it raises Canceled. If `is_turn_over` returns
+        True after a file, it returns False. Also raises LeaseLost and StorageError.
         """
         for number, file in enumerate(self.plan.motions, 1):
             self.done = number
             if should_stop():
                 raise Canceled("The import was stopped.")
             if file.path in self._recorded:
-                continue
+                continue  # registered before the import was interrupted
             self._register(self.plan.item(file))
             progress(self.done, self.total, file.path)
-            if number < self.total and is_over():
+            if number < self.total and is_turn_over():
                 self.record_problems()
                 return False
         self.record_problems()
         return True
 
     def finish(self, detail: str) -> JobRecord:
-        """Record the missing files that manifests name; then the job waits for its clips."""
+        """Record the missing files that manifests name. After that the job waits for its clips."""
         with self.lib.store.write() as tx:
             absent = [
                 NewEntry(path, ImportOutcome.ABSENT, problem=problem.as_problem())
@@ -93,17 +95,17 @@ class Registering:
             return stored.wait_for_clips(tx, self.lease, detail, absent=self.plan.absent_count)
 
     def record_problems(self) -> None:
-        """Record the files without a clip that wait for it. Raises LeaseLost, Canceled."""
+        """Record the problems that were not recorded yet. Raises LeaseLost, Canceled."""
         if self._problems:
             with self.lib.store.write() as tx:
                 self._record(tx)
             self._problems = []
 
     def _record(self, tx: Tx, *more: NewEntry) -> None:
-        """Record in the caller's transaction: that is progress, and a heartbeat.
+        """Record problems and `more` in the caller's transaction, with a heartbeat of the job.
 
-        Raises LeaseLost where another worker has the import, Canceled where it is to end; the
-        transaction is then undone.
+        Raises LeaseLost if another worker has the import, and Canceled if somebody canceled it;
+        both undo the transaction.
         """
         if leases.heartbeat(tx, self.lease, has_progressed=True):
             raise Canceled("The import was canceled.")
@@ -111,21 +113,21 @@ class Registering:
         self._recorded_at = time.monotonic()
 
     def _register(self, item: Item) -> None:
-        """Store one file as a clip, or note why not; failures of the store are raised."""
+        """Store one file as a clip, or keep its problem. Raises the failures of the store."""
         try:
             if problem := item.file.problem or item.row.problem:
                 raise problem
             with item.file.open() as content:
-                self._store(judged(content), item)
+                self._store(checked_content(content), item)
         except (StorageError, LeaseLost, Canceled):
-            raise
+            raise  # these concern the whole import, not this file
         except KinedexError as problem:
-            self._note(item.file.path, problem)
+            self._add_problem(item.file.path, problem)
 
-    def _note(self, path: str, problem: KinedexError) -> None:
+    def _add_problem(self, path: str, problem: KinedexError) -> None:
         self._problems.append(NewEntry(path, ImportOutcome.FAILED, problem=problem.as_problem()))
         waited = time.monotonic() - self._recorded_at
-        if len(self._problems) >= MOST_TOGETHER or waited >= RECORD_AFTER_S:
+        if len(self._problems) >= MAX_PROBLEMS_TOGETHER or waited >= RECORD_AFTER_S:
             self.record_problems()
 
     def _store(self, content: Readable, item: Item) -> None:
@@ -149,39 +151,39 @@ class Registering:
                 created = add(tx, new, self._priority())
                 if created.is_new and row.keyposes is not None:
                     keypose_annotations.put(tx, created.clip.id, row.keyposes)
-                is_done = not created.is_new and created.clip.state is ClipState.READY
-                outcome = ImportOutcome.EXISTS if is_done else ImportOutcome.QUEUED
+                exists = not created.is_new and created.clip.state is ClipState.READY
+                outcome = ImportOutcome.EXISTS if exists else ImportOutcome.QUEUED
                 self._record(tx, NewEntry(path, outcome, clip_id=created.clip.id))
         self._problems = []
 
     def _priority(self) -> int:
-        """The priority of the next analysis: a large import must not delay a small one."""
-        return BULK_PRIORITY + min((self.done // FIRST_CLIPS).bit_length(), LOWEST_STEPS)
+        """The priority of the next analysis. A large import must not delay a small one."""
+        return BULK_PRIORITY + min((self.done // FIRST_CLIPS).bit_length(), MAX_PRIORITY_STEPS)
 
 
-def judged(content: Readable) -> Readable:
-    """The same content, if it may be a motion file.
+def checked_content(content: Readable) -> Readable:
+    """The same content, after a check of its format if the file is small.
 
-    Raises EmptyFile or UnknownFormat for a small file that is none, before it is written.
+    So a small file that is no motion is never written to disk. Raises EmptyFile, UnknownFormat.
     """
     chunks, size = [], 0
-    while size <= JUDGED_AT_ONCE and (chunk := content.read(JUDGED_AT_ONCE + 1 - size)):
+    while size <= MAX_CHECKED_BYTES and (chunk := content.read(MAX_CHECKED_BYTES + 1 - size)):
         chunks.append(chunk)
         size += len(chunk)
     head = b"".join(chunks)
-    if size <= JUDGED_AT_ONCE:
+    if size <= MAX_CHECKED_BYTES:
         sniff(head)
     return _Rejoined(head, content)
 
 
 class _Rejoined:
-    """A file whose beginning was read already: gives the beginning, then the rest."""
+    """A file whose first bytes were read already: `read` returns them first, then the rest."""
 
     def __init__(self, head: bytes, rest: Readable) -> None:
         self._head, self._rest = memoryview(head), rest
 
     def read(self, size: int, /) -> bytes:
-        """At most `size` bytes; none at the end."""
+        """The next bytes, at most `size`; empty at the end."""
         if not self._head:
             return self._rest.read(size)
         part, self._head = self._head[:size], self._head[size:]
@@ -189,7 +191,7 @@ class _Rejoined:
 
 
 def _staged(lib: Library, files: ExitStack, source: SourceFile | None) -> StagedFile | None:
-    """Stage a file that goes with a motion, if there is one, until `files` is closed."""
+    """Stage the skeleton or the recording of a motion, if there is one, until `files` closes."""
     if source is None:
         return None
     if source.problem is not None:

@@ -1,8 +1,8 @@
-"""Which ASF file among an import's files is the skeleton of which AMC file, by their names.
+"""Finds the skeleton (ASF file) of each motion (AMC file) of an import by their names.
 
-CMU calls them `07.asf` and `07_01.amc`, others `HDM_bd.asf` and `HDM_bd_01-01.amc`: the
-skeleton's stem begins the motion's. Names are all that an archive has; contents decide
-afterwards whether the files are what they are called.
+CMU's names are `07.asf` and `07_01.amc`, HDM05's `HDM_bd.asf` and `HDM_bd_01-01.amc`: the stem of
+the motion begins with the stem of the skeleton. An archive has no other information on pairs. The
+readers check the contents later.
 """
 
 from __future__ import annotations
@@ -11,17 +11,18 @@ from bisect import bisect_left
 from collections.abc import Iterable
 from posixpath import splitext
 
-MOST_CUTS = 30
-"""Words that are cut off a motion's stem in search of its skeleton's."""
+MAX_CUTS = 30
+"""Largest number of words that are removed from the end of a motion's stem."""
 
 _Folder = tuple[str, ...]
 
 
 def pair_skeletons(paths: Iterable[str]) -> dict[str, str]:
-    """The ASF path of each AMC path, of those whose skeleton is clear.
+    """The ASF path of each AMC path. An AMC file without a clear skeleton is left out.
 
-    In the AMC's own folder first, then in the folders nearest to it; in each the ASF whose
-    stem begins the AMC's stem furthest, else the only one of the AMC's own folder.
+    The rules, in this order: the ASF file in the same folder with the longest stem that the AMC's
+    stem begins with; the only ASF file of the same folder; the ASF file of the nearest folder,
+    again with the longest such stem.
     """
     motions, skeletons = [], _Skeletons()
     for path in paths:
@@ -36,8 +37,10 @@ def pair_skeletons(paths: Iterable[str]) -> dict[str, str]:
 
 
 class _Skeletons:
-    """The skeletons of an import, found without a walk over all of them: there may be very many,
-    and a motion for each."""
+    """The skeletons of an import, by folder and by stem.
+
+    An import may have very many skeletons and motions, so no search visits all skeletons.
+    """
 
     def __init__(self) -> None:
         self._in_folder: dict[_Folder, list[str]] = {}
@@ -45,56 +48,58 @@ class _Skeletons:
         self._by_stem: dict[str, list[tuple[_Folder, str]]] = {}
 
     def add(self, path: str) -> None:
-        """Add a skeleton; of two in one folder with one stem the first counts there."""
+        """Add a skeleton. If two in one folder have the same stem, the first one counts."""
         folder, stem = _parts(path)
         self._in_folder.setdefault(folder, []).append(path)
         self._named.setdefault((folder, stem), path)
         self._by_stem.setdefault(stem, []).append((folder, path))
 
     def sort(self) -> None:
-        """Call it once all are added."""
-        for alike in self._by_stem.values():
-            alike.sort()
+        """Sort the skeletons of each stem by folder. Call it after all were added."""
+        for same_stem in self._by_stem.values():
+            same_stem.sort()
 
     def of(self, motion: str) -> str | None:
-        """The skeleton of a motion, if it is clear."""
+        """The skeleton of a motion; None if it is not clear."""
         folder, whole = _parts(motion)
-        stems = _beginnings(whole)
+        stems = _shortened_stems(whole)
         for stem in stems:
             if (folder, stem) in self._named:
                 return self._named[folder, stem]
-        beside = self._in_folder.get(folder, ())
-        if len(beside) == 1:
-            return beside[0]
+        same_folder = self._in_folder.get(folder, ())
+        if len(same_folder) == 1:
+            return same_folder[0]
         for stem in stems:
             if stem in self._by_stem:
                 return _nearest(folder, self._by_stem[stem])
         return None
 
 
-def _beginnings(stem: str) -> list[str]:
-    """The stem, and what is left of it where words at its end are cut off, longest first."""
+def _shortened_stems(stem: str) -> list[str]:
+    """The stem, then the stem without its last word, its last two words, and so on."""
     cuts = [i for i in range(len(stem) - 1, 0, -1) if not stem[i].isalnum()]
-    return [stem] + [stem[:cut] for cut in cuts[:MOST_CUTS]]
+    return [stem] + [stem[:cut] for cut in cuts[:MAX_CUTS]]
 
 
 def _nearest(folder: _Folder, sorted_skeletons: list[tuple[_Folder, str]]) -> str | None:
-    """The skeleton that shares most folders with a motion's; None where several do."""
-    # Those that share most stand together in the order, around where the folder would stand.
+    """The skeleton that shares most parent folders with `folder`; None if several share as many."""
+    # In sorted order, the skeletons that share most are next to the index of `folder`. Two on each
+    # side are enough to see whether the nearest one is the only one.
     at = bisect_left(sorted_skeletons, (folder, ""))
     around = sorted_skeletons[max(at - 2, 0) : at + 2]
     shared = [_shared(folder, other) for other, _ in around]
-    most = max(shared)
-    nearest = [path for (_, path), count in zip(around, shared, strict=True) if count == most]
+    largest = max(shared)
+    nearest = [path for (_, path), count in zip(around, shared, strict=True) if count == largest]
     return nearest[0] if len(nearest) == 1 else None
 
 
-def _shared(ours: _Folder, theirs: _Folder) -> int:
-    """How many folders from the top two places have in common."""
-    pairs = zip(ours, theirs, strict=False)
-    return next((i for i, (a, b) in enumerate(pairs) if a != b), min(len(ours), len(theirs)))
+def _shared(first: _Folder, second: _Folder) -> int:
+    """The number of folders, from the root, that two paths have in common."""
+    pairs = zip(first, second, strict=False)
+    return next((i for i, (a, b) in enumerate(pairs) if a != b), min(len(first), len(second)))
 
 
 def _parts(path: str) -> tuple[_Folder, str]:
+    """The folder of a path, and its stem in lower case."""
     folder, _, name = path.rpartition("/")
     return tuple(folder.split("/")) if folder else (), splitext(name)[0].lower()

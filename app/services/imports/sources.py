@@ -1,8 +1,7 @@
-"""Where the files of an import come from: a ZIP archive, a folder, or single files.
+"""The sources of an import: a ZIP archive, a folder, or single files.
 
-All give the same thing, a list of `SourceFile`, each to be opened once; a file that must not
-be opened carries its problem instead. Nothing is ever unpacked to a path of the archive's
-choosing.
+Each source returns a list of `SourceFile`. A file that must not be opened has a problem instead.
+No file of an archive is ever written to the path that the archive names.
 """
 
 from __future__ import annotations
@@ -26,22 +25,23 @@ from app.services.imports.archive_directory import open_zip
 _ENCRYPTED = 0x1
 _COMPRESSIONS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA)
 _RATIO_COUNTS_FROM = 10 * 2**20
-"""Unpacked bytes below which an archive's ratio is of no concern."""
+"""Archives of fewer unpacked bytes may have any ratio."""
 _READ_FAILURES = (
-    OSError,  # bzip2's complaint about bad content is one, too
+    OSError,  # bzip2 raises it for bad content
     EOFError,
-    RuntimeError,  # NotImplementedError is one
+    RuntimeError,  # includes NotImplementedError
     ValueError,
     zipfile.BadZipFile,
     zlib.error,
     lzma.LZMAError,
 )
-"""What opening or reading a file or an archive's entry may raise."""
+"""Exceptions from opening or reading a file or an entry of an archive."""
 
 
 @dataclass(frozen=True, slots=True)
 class ArchiveLimits:
-    """Most entries, largest unpacked size as a multiple of the archive's, bytes in one file."""
+    """Upper limits: number of entries; unpacked size of all, as a multiple of the archive's size;
+    bytes of one file."""
 
     entries: int
     ratio: float
@@ -49,16 +49,18 @@ class ArchiveLimits:
 
 
 class SourceContent:
-    """An open file of an import. What is wrong with it is Unreadable, and its own fault:
-    an OSError in the midst of storing it would be taken for a failure of the store."""
+    """An open file of an import. All its failures become Unreadable.
+
+    Files are read while they are stored. An OSError would look like a failure of the store.
+    """
 
     def __init__(self, opener: Callable[[], IO[bytes]]) -> None:
-        """Raises Unreadable."""
+        """Open the file. Raises Unreadable."""
         with _read_failures():
             self._file = opener()
 
     def read(self, size: int = -1, /) -> bytes:
-        """At most `size` bytes, or all; none at the end. Raises Unreadable."""
+        """The next bytes, at most `size` (-1: all); empty at the end. Raises Unreadable."""
         with _read_failures():
             return self._file.read(size)
 
@@ -76,7 +78,10 @@ class SourceContent:
 
 @dataclass(frozen=True, slots=True)
 class SourceFile:
-    """One file of an import: its path (relative, with /), and how to open it, or why not."""
+    """One file of an import.
+
+    path: relative, with /; open: opens it, at most once; problem: why it must not be opened.
+    """
 
     path: str
     open: Callable[[], SourceContent]
@@ -85,10 +90,10 @@ class SourceFile:
 
 @contextmanager
 def archive_files(archive: BinaryIO | Path, limits: ArchiveLimits) -> Iterator[list[SourceFile]]:
-    """The files of a ZIP, in its order, readable within the `with` block.
+    """The files of a ZIP archive, in its order. They can be read within the `with` block.
 
-    Raises Unreadable where it is no ZIP, TooLarge where it holds too many entries or would
-    unpack to too much. Single bad entries carry their problem.
+    A bad entry has a problem. Raises Unreadable if the archive is not a ZIP, and TooLarge if it
+    has too many entries or its unpacked size is too large.
     """
     with ExitStack() as files:
         file = files.enter_context(archive.open("rb")) if isinstance(archive, Path) else archive
@@ -96,29 +101,29 @@ def archive_files(archive: BinaryIO | Path, limits: ArchiveLimits) -> Iterator[l
             opened = files.enter_context(open_zip(file, limits.entries))
         except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as problem:
             raise Unreadable(f"The archive cannot be read as ZIP: {problem}.") from problem
-        entries = [entry for entry in opened.infolist() if not _left_out(entry)]
-        _check_whole(entries, _size(file), limits)
+        entries = [entry for entry in opened.infolist() if not _is_ignored(entry)]
+        _check_archive(entries, _size(file), limits)
         yield [_archive_file(opened, entry, limits) for entry in entries]
 
 
 def folder_files(folder: Path) -> list[SourceFile]:
-    """The files below a folder, sorted by path, hidden ones left out; links to folders too."""
-    found = []
+    """The files below a folder, sorted by path, without hidden files and links to folders."""
+    paths = []
     for root, folders, names in os.walk(folder):
         folders[:] = sorted(name for name in folders if not name.startswith("."))
         base = Path(root)
-        found += [base / name for name in sorted(names) if not name.startswith(".")]
-    return [_disk_file(f.relative_to(folder).as_posix(), f) for f in found]
+        paths += [base / name for name in sorted(names) if not name.startswith(".")]
+    return [_disk_file(path.relative_to(folder).as_posix(), path) for path in paths]
 
 
 def single_file(path: Path, companion: Path | None = None) -> list[SourceFile]:
-    """One file by itself, or with the file that it cannot be read without."""
+    """One file; companion: a file that it needs, as an AMC file needs its ASF file."""
     files = [path] if companion is None else [path, companion]
     return [_disk_file(file.name, file) for file in files]
 
 
 def is_archive(path: Path) -> bool:
-    """Whether a path is a ZIP archive (by its content; .npz is one, and is not meant)."""
+    """Whether a file is a ZIP archive by its content. NPZ files are ZIPs too, but are motions."""
     return path.is_file() and path.suffix.lower() != ".npz" and zipfile.is_zipfile(path)
 
 
@@ -128,7 +133,7 @@ def _disk_file(name: str, path: Path) -> SourceFile:
 
 def _open_file(path: Path) -> IO[bytes]:
     if not stat.S_ISREG(path.stat().st_mode):
-        raise Unreadable("This is no regular file.")  # to open a pipe is to wait for a writer
+        raise Unreadable("This is no regular file.")  # opening a pipe waits for a writer
     return path.open("rb")
 
 
@@ -140,8 +145,8 @@ def _read_failures() -> Iterator[None]:
         raise Unreadable(f"The file cannot be read: {problem}.") from problem
 
 
-def _left_out(entry: zipfile.ZipInfo) -> bool:
-    """Folders, and what macOS and version control leave behind."""
+def _is_ignored(entry: zipfile.ZipInfo) -> bool:
+    """Whether an entry is a folder, a hidden file, or metadata of macOS or version control."""
     parts = _path_of(entry).parts
     hidden = any(part.startswith(".") and part not in (".", "..") for part in parts)
     return entry.is_dir() or "__MACOSX" in parts or hidden
@@ -151,14 +156,15 @@ def _path_of(entry: zipfile.ZipInfo) -> PurePosixPath:
     return PurePosixPath(entry.filename.replace("\\", "/"))
 
 
-def _check_whole(entries: list[zipfile.ZipInfo], size: int, limits: ArchiveLimits) -> None:
+def _check_archive(entries: list[zipfile.ZipInfo], size: int, limits: ArchiveLimits) -> None:
+    """Raise TooLarge for too many entries or a too large unpacked size; size: of the archive."""
     if len(entries) > limits.entries:
         place = Place("archive", f"{len(entries)} entries, the limit is {limits.entries}")
         raise TooLarge("The archive holds too many files.", places=[place])
     unpacked = sum(entry.file_size for entry in entries)
     if unpacked > max(size * limits.ratio, _RATIO_COUNTS_FROM):
         message = f"{size} bytes would unpack to {unpacked}, more than {limits.ratio:g} times"
-        raise TooLarge("The archive unpacks to too much.", places=[Place("archive", message)])
+        raise TooLarge("The unpacked archive is too large.", places=[Place("archive", message)])
 
 
 def _archive_file(
@@ -170,11 +176,13 @@ def _archive_file(
 
 
 def _entry_problem(entry: zipfile.ZipInfo, limits: ArchiveLimits) -> KinedexError | None:
+    """Why an entry must not be opened; None if it may."""
     where = [Place(entry.filename, "refused")]
     path = _path_of(entry)
+    # A colon in the first part is a drive of Windows ("C:/a.bvh").
     if path.is_absolute() or ".." in path.parts or ":" in (path.parts or ("",))[0]:
         return BadContent("The path leads out of the archive.", places=where)
-    if stat.S_ISLNK(entry.external_attr >> 16):
+    if stat.S_ISLNK(entry.external_attr >> 16):  # the upper 16 bits are the Unix file mode
         return BadContent("Links in an archive are not followed.", places=where)
     if entry.flag_bits & _ENCRYPTED:
         return BadContent("The entry is encrypted.", places=where)

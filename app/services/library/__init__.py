@@ -1,1 +1,1 @@
-"""What every use case is given: the open library, its models and its analysis pool."""
+"""The open library that every use case gets, with its models and its analysis pool."""

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from app.motion.skeleton.recording import Caution, Recording
 
 _log = logging.getLogger(__name__)
-_Found = TypeVar("_Found")
+_Result = TypeVar("_Result")
 
 TRIES = 2
 """How often an analysis that somebody waits for is tried if its process is killed from outside."""
@@ -47,7 +47,7 @@ TRIES = 2
 
 @dataclass(frozen=True, slots=True)
 class AnalysisRequest:
-    """What to analyze: `content`, or the file at `path`; and what the client says of it.
+    """What to analyze: `content`, or the file at `path`; with the client's hints.
 
     skeleton, skeleton_path: content or path of the ASF file that an AMC file needs; stack: the
     animation stack of an FBX file; thresholds: T1 and T2 of keyposes, None for the default
@@ -74,7 +74,7 @@ class AnalysisRequest:
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """The most that one analysis may take: seconds, MB of address space, frames, joints."""
+    """Upper limits of one analysis: seconds, MB of address space, frames, joints."""
 
     seconds: float
     memory_mb: int
@@ -94,7 +94,7 @@ class AnalysisPool:
     def submit(
         self, request: AnalysisRequest, *, is_alone: bool = False
     ) -> concurrent.futures.Future[Analysis]:
-        """Begin an analysis; `outcome` gives its result. Canceling the future kills the child.
+        """Begin an analysis; `outcome` returns its result. Canceling the future kills the child.
 
         is_alone: wait until no other analysis of this pool runs, and let none begin meanwhile.
         """
@@ -109,8 +109,8 @@ class AnalysisPool:
         return self._wait_for(read_file, request)
 
     def _wait_for(
-        self, work: Callable[[AnalysisRequest, Limits], _Found], request: AnalysisRequest
-    ) -> _Found:
+        self, work: Callable[[AnalysisRequest, Limits], _Result], request: AnalysisRequest
+    ) -> _Result:
         """Do the work and wait; try again if the process was killed from outside."""
         for _ in range(TRIES - 1):
             try:
@@ -121,17 +121,17 @@ class AnalysisPool:
 
     def _begin(
         self,
-        work: Callable[[AnalysisRequest, Limits], _Found],
+        work: Callable[[AnalysisRequest, Limits], _Result],
         request: AnalysisRequest,
         *,
         is_alone: bool = False,
-    ) -> concurrent.futures.Future[_Found]:
+    ) -> concurrent.futures.Future[_Result]:
         with self._lock:
             return self._pool.submit(
                 work, request, self.limits, seconds=self.limits.seconds, is_alone=is_alone
             )
 
-    def outcome(self, future: concurrent.futures.Future[_Found]) -> _Found:
+    def outcome(self, future: concurrent.futures.Future[_Result]) -> _Result:
         """The result of an analysis, or of reading a file; waits for it.
 
         Raises BadContent (or TooLarge) if the content is at fault: AnalysisTimedOut,
@@ -166,7 +166,7 @@ class AnalysisPool:
             ) from surprise
 
     def rest(self) -> None:
-        """Give back the memory of idle children; the next request starts new ones."""
+        """Free the memory of idle children; the next request starts new ones."""
         with self._lock:
             resting, self._pool = self._pool, self._new_pool()
         resting.close()
@@ -229,7 +229,7 @@ def _listen(path: Path) -> tuple[Onsets | None, tuple[Caution, ...]]:
         return None, (Caution("audio_unreadable", "The recording needs too much memory."),)
     if sound.missing is None:
         return onsets, ()
-    detail = f"The recording is cut off: {sound.missing}, and only that is heard."
+    detail = f"The recording is cut off: {sound.missing}, and only that part is used."
     return onsets, (Caution("audio_truncated", detail),)
 
 
@@ -253,10 +253,13 @@ def read_file(request: AnalysisRequest, limits: Limits) -> Recording:
 
 def _check_size(recording: Recording, limits: Limits) -> None:
     frames, joints = recording.positions.shape[:2]
-    for noun, count, most in (("frames", frames, limits.frames), ("joints", joints, limits.joints)):
-        if count > most:
-            place = Place(noun, f"{count} {noun}, the limit is {most}")
-            raise TooLarge(f"The motion has more than {most} {noun}.", places=[place])
+    for noun, count, limit in (
+        ("frames", frames, limits.frames),
+        ("joints", joints, limits.joints),
+    ):
+        if count > limit:
+            place = Place(noun, f"{count} {noun}, the limit is {limit}")
+            raise TooLarge(f"The motion has more than {limit} {noun}.", places=[place])
 
 
 def _prepare(memory_mb: int, level: str) -> None:

@@ -1,6 +1,7 @@
-"""A clip's keyposes, as everything that is built on them takes them.
+"""The keyposes of a clip that segments, models and reductions use.
 
-Where a person has named a clip's keyposes they are its keyposes; else those that were found.
+They are the keyposes that a person annotated. If nobody annotated the clip, they are the keyposes
+that the analysis found.
 """
 
 from __future__ import annotations
@@ -29,44 +30,52 @@ ROLE_POSITIONS = "role_positions"
 
 
 def keypose_frames(lib: Library, clip_id: str, track: BodyTrack) -> IntArray:
-    """(k,) rising frames of `track` at which a ready clip's keyposes are.
+    """(k,) frames of a ready clip's keyposes, in rising order, at the rate of `track` (30 Hz).
 
-    Those that are stored; found anew for a clip that was analysed before they were.
+    The frames are stored. If the clip's analysis is older than their storage, they are found here.
     """
     try:
         with lib.store.read() as tx:
-            stored = arrays.get_one(tx, clip_id, KEYPOSE_FRAMES)
+            frames = arrays.get_one(tx, clip_id, KEYPOSE_FRAMES)
     except NotFound:
-        stored = find_keyposes(track, beats=stored_beats(lib, clip_id)).frames
-    return np.asarray(stored[(stored >= 0) & (stored < track.frames)], dtype=np.int64)
+        frames = find_keyposes(track, beats=stored_beats(lib, clip_id)).frames
+    # A new analysis may have made the motion shorter than the stored frames.
+    return np.asarray(frames[(frames >= 0) & (frames < track.frames)], dtype=np.int64)
 
 
 def stored_beats(lib: Library, clip_id: str) -> Beats | None:
-    """The beats of a ready clip; None where it was analysed before they were stored."""
+    """The beats of a ready clip; None if its analysis is older than the storage of beats."""
     with lib.store.read() as tx:
         return read_beats(tx, clip_id)
 
 
 def read_beats(tx: Tx, clip_id: str) -> Beats | None:
-    """As `stored_beats`, in the caller's transaction."""
+    """The same as `stored_beats`, in the caller's transaction."""
     try:
         return beats_of({name: arrays.get_one(tx, clip_id, name) for name in BEAT_ARRAYS})
     except NotFound:
         return None
 
 
-def named_keyposes(tx: Tx, clip: ClipRecord, found: Analysis) -> dict[str, NDArray[Any]]:
-    """The arrays to store of a clip whose keyposes a person named; none of any other."""
-    named = keypose_annotations.get(tx, clip.id)
-    if named is None:
+def annotated_keypose_arrays(
+    tx: Tx, clip: ClipRecord, analysis: Analysis
+) -> dict[str, NDArray[Any]]:
+    """The arrays by name that replace those of an analysis, since they depend on the keyposes.
+
+    Empty if nobody annotated the clip's keyposes.
+    """
+    times = keypose_annotations.get(tx, clip.id)
+    if times is None:
         return {}
-    frames = frames_at(np.array(named), len(found.arrays[ROLE_POSITIONS]))
-    return keypose_arrays(frames, found.arrays[FEATURES])
+    frames = frames_at(np.array(times), len(analysis.arrays[ROLE_POSITIONS]))
+    return keypose_arrays(frames, analysis.arrays[FEATURES])
 
 
-def store_keyposes(tx: Tx, clip: ClipRecord, times: FloatArray) -> None:
-    """Put keyposes at `times` (seconds) in place of those of a ready clip, in all that is
-    built on them."""
-    count = len(arrays.get_one(tx, clip.id, ROLE_POSITIONS))
-    changed = keypose_arrays(frames_at(times, count), arrays.get_one(tx, clip.id, FEATURES))
+def store_keypose_arrays(tx: Tx, clip: ClipRecord, times: FloatArray) -> None:
+    """Replace the keyposes of a ready clip, and all stored arrays that depend on them.
+
+    times: (k,) seconds of the new keyposes. Raises NotFound for a clip that was removed.
+    """
+    frame_count = len(arrays.get_one(tx, clip.id, ROLE_POSITIONS))
+    changed = keypose_arrays(frames_at(times, frame_count), arrays.get_one(tx, clip.id, FEATURES))
     arrays.put_some(tx, clip.id, changed, version=clip.analysis_version or 0)

@@ -1,4 +1,4 @@
-"""A library in use: its settings, store, index and what else the services share."""
+"""An open library: the settings, the store, the indexes and the models that services share."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ ARRAY_CACHE_BYTES = 128 * 2**20
 
 @dataclass(frozen=True, slots=True)
 class Library:
-    """What every service call gets; one for each process, safe to share between threads.
+    """The first argument of every service call. A process has one; threads may share it.
 
-    health: whether the store can do its work; whoever serves starts it.
-    word_scores, symbol_points: what the word models make of the clips in the index.
-    pool analyses uploaded queries; a worker has a pool of its own. segments: what lies between
-    the keyposes of all clips, loaded by the first search that asks. windows: the windows of all
-    clips by the name of their scale, and poses: the pose covers of all clips, both loaded by
-    the first search that asks for them.
+    health: whether the store can do its work; the API server starts it. index: the motion vectors
+    of all clips. arrays: descriptors in memory, for ranking again. word_scores, symbol_points:
+    the outputs of the word models for the clips in the index. pool: analyzes uploaded queries; a
+    worker has its own pool. windows: the windows of all clips, by the name of their scale;
+    segments: the segments of all clips; poses: the pose covers of all clips; the first search
+    that needs one of these three loads it. metrics: the clips' coordinates in each learned metric.
     """
 
     settings: Settings
@@ -54,23 +54,24 @@ class Library:
 
     @classmethod
     def open(cls, settings: Settings, *, prepare: bool = True) -> Self:
-        """Open the library that the settings name, making it where there is none.
+        """Open the library that the settings name; create it if it does not exist.
 
-        Raises DatabaseOutOfDate; LibraryMismatch where its files are not those of its database.
-        `prepare=False` never writes.
+        prepare: False never writes, so it does not create a library. Raises DatabaseOutOfDate, and
+        LibraryMismatch if the files and the database belong to different libraries.
         """
-        look = identity.prepare if prepare else identity.check
-        library_id = look(settings.database, settings.files_dir)
+        identify = identity.prepare if prepare else identity.check
+        library_id = identify(settings.database, settings.files_dir)
         warn_if_open(settings.data_dir)
-        kept = ArrayCache(ARRAY_CACHE_BYTES)
-        index = VectorIndex(on_change=kept.forget)
+        cache = ArrayCache(ARRAY_CACHE_BYTES)
+        # A clip that changed has new arrays: the index notices it first, and the cache must follow.
+        index = VectorIndex(on_change=cache.forget)
         store = Store.open(settings.database, settings.files_dir, library_id)
         return cls(
             settings=settings,
             store=store,
             health=Health(store),
             index=index,
-            arrays=kept,
+            arrays=cache,
             models=FittedModels(),
             word_scores=ModelRows(),
             symbol_points=ModelRows(),
@@ -87,13 +88,13 @@ class Library:
         )
 
     def close(self) -> None:
-        """Stop the analysis processes and give back the connections."""
+        """Stop the analysis processes and close the database connections."""
         self.pool.close()
         self.store.close()
 
 
 def query_limits(settings: Settings) -> Limits:
-    """What the analysis of an uploaded query may take."""
+    """The limits of the analysis of an uploaded query. A client waits for it, so it is short."""
     return Limits(
         settings.query_timeout_s,
         settings.analysis_memory_mb,
@@ -103,7 +104,7 @@ def query_limits(settings: Settings) -> Limits:
 
 
 def ingest_limits(settings: Settings) -> Limits:
-    """What the analysis of a clip may take."""
+    """The limits of the analysis of a clip. Nobody waits for it."""
     return Limits(
         settings.analysis_timeout_s,
         settings.analysis_memory_mb,

@@ -1,6 +1,7 @@
-"""What a fit of words or of a learned metric made of the clips it saw, stored with the model.
+"""The outputs of a model for the clips that it was fitted on, stored with the model.
 
-So the first search after a fit or a start reads it, instead of computing it for all clips.
+The word models and the learned metrics have such outputs. The first search after a fit or a start
+reads them and does not compute them for all clips.
 """
 
 from __future__ import annotations
@@ -19,30 +20,36 @@ from app.store.clips import versions as library
 OUTPUTS = f"{models.CLIP_ARRAY_PREFIX}outputs"
 POINTS = f"{models.CLIP_ARRAY_PREFIX}points"
 _IDS = f"{models.CLIP_ARRAY_PREFIX}ids"
-MOST_VALUES = 50_000_000
-"""Outputs beyond so many (200 MB) are not stored: searches compute what they need."""
+MAX_VALUES = 50_000_000
+"""Largest number of stored word scores (200 MB as float32). If a library has more, none are
+stored, and searches compute what they need."""
 
 
-def known_arrays(
+def precomputed_arrays(
     ids: Sequence[str], outputs: FloatArray | None, points: FloatArray
 ) -> dict[str, NDArray[Any]]:
-    """Arrays to store with the model: word scores (N, V) and coordinates (N, d) of N clips.
+    """The arrays to store with a model, by name.
 
-    Learned metrics have no word scores.
+    ids: of N clips; outputs: (N, V) their scores for V words, None for a learned metric; points:
+    (N, d) their coordinates in the model's space. Both are stored as float32.
     """
     if not ids:
         return {}
-    kept: dict[str, NDArray[Any]] = {
+    stored: dict[str, NDArray[Any]] = {
+        # (N, longest id) bytes: the store holds numeric arrays only.
         _IDS: np.array([list(name) for name in _padded(ids)], dtype=np.uint8),
         POINTS: points.astype(np.float32),
     }
-    if outputs is not None and outputs.size <= MOST_VALUES:
-        kept[OUTPUTS] = outputs.astype(np.float32)
-    return kept
+    if outputs is not None and outputs.size <= MAX_VALUES:
+        stored[OUTPUTS] = outputs.astype(np.float32)
+    return stored
 
 
-def read_known(lib: Library, model_id: str, name: str) -> tuple[Sequence[str], FloatArray]:
-    """Ids (n) and rows (n, width) of OUTPUTS or POINTS, of clips that did not change since."""
+def read_precomputed(lib: Library, model_id: str, name: str) -> tuple[Sequence[str], FloatArray]:
+    """The stored rows of a model, for the clips that did not change since its fit.
+
+    name: OUTPUTS or POINTS. Returns n ids and their rows (n, width).
+    """
     with lib.store.read() as tx:
         stored = models.load_arrays(tx, model_id, (_IDS, name))
         fitted_at = models.get(tx, model_id).library_version
@@ -51,11 +58,12 @@ def read_known(lib: Library, model_id: str, name: str) -> tuple[Sequence[str], F
         return (), np.zeros((0, 0))
     ids = [row.tobytes().rstrip(b"\0").decode() for row in stored[_IDS]]
     changed = {*changes.changed, *changes.removed}
-    is_same = [row for row, clip_id in enumerate(ids) if clip_id not in changed]
-    return [ids[row] for row in is_same], stored[name][is_same]
+    unchanged = [row for row, clip_id in enumerate(ids) if clip_id not in changed]
+    return [ids[row] for row in unchanged], stored[name][unchanged]
 
 
 def _padded(ids: Sequence[str]) -> list[bytes]:
+    """The ids as bytes of one length, filled with zeros at the end."""
     raw = [clip_id.encode() for clip_id in ids]
     width = max(map(len, raw))
     return [name.ljust(width, b"\0") for name in raw]

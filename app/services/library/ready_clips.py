@@ -1,4 +1,4 @@
-"""Clips that are ready: what most use cases begin with."""
+"""Reading ready clips, and clear errors for clips that are missing or not ready."""
 
 from __future__ import annotations
 
@@ -14,37 +14,37 @@ from app.store.database.engine import Tx
 
 
 def ready_clip(lib: Library, clip_id: str) -> ClipRecord:
-    """A clip that is ready; raises ClipNotFound, ClipNotReady."""
+    """A ready clip by id. Raises ClipNotFound, ClipNotReady."""
     with lib.store.read() as tx:
-        return find_ready(tx, clip_id)
+        return read_ready_clip(tx, clip_id)
 
 
 def ready_clips(lib: Library, clip_ids: Sequence[str], field: str) -> dict[str, ClipRecord]:
-    """Clips that are ready, by id, each once, in the order asked for.
+    """Ready clips by id, in the order of `clip_ids`. A repeated id gives one clip.
 
-    field: which holds the ids: every one that is wrong is named by its place in it. Raises
-    ClipNotFound, ClipNotReady.
+    field: the name of the client's field that holds the ids. An error names each wrong id by its
+    index in that field. Raises ClipNotFound, ClipNotReady.
     """
     with lib.store.read() as tx:
-        found = stored.get_many(tx, dict.fromkeys(clip_ids))
-    unknown = [place for place, clip_id in enumerate(clip_ids) if clip_id not in found]
+        clips = stored.get_many(tx, dict.fromkeys(clip_ids))
+    unknown = [index for index, clip_id in enumerate(clip_ids) if clip_id not in clips]
     if unknown:
-        names = list(dict.fromkeys(repr(clip_ids[place]) for place in unknown))
+        names = list(dict.fromkeys(repr(clip_ids[index]) for index in unknown))
         which = "is no clip with the id" if len(names) == 1 else "are no clips with the ids"
-        places = [Place(f"{field}.{place}", "is the id of no clip") for place in unknown]
+        places = [Place(f"{field}.{index}", "is the id of no clip") for index in unknown]
         raise ClipNotFound(f"There {which} {', '.join(names)}", places=places)
-    waiting = [
-        Place(f"{field}.{place}", f"is {found[clip_id].state.value}")
-        for place, clip_id in enumerate(clip_ids)
-        if found[clip_id].state is not ClipState.READY
+    not_ready = [
+        Place(f"{field}.{index}", f"is {clips[clip_id].state.value}")
+        for index, clip_id in enumerate(clip_ids)
+        if clips[clip_id].state is not ClipState.READY
     ]
-    if waiting:
-        raise ClipNotReady("Some of the clips are not ready.", places=waiting)
-    return found
+    if not_ready:
+        raise ClipNotReady("Some of the clips are not ready.", places=not_ready)
+    return clips
 
 
-def find_ready(tx: Tx, clip_id: str) -> ClipRecord:
-    """A clip that is ready, in a transaction; raises ClipNotFound, ClipNotReady."""
+def read_ready_clip(tx: Tx, clip_id: str) -> ClipRecord:
+    """A ready clip by id, in the caller's transaction. Raises ClipNotFound, ClipNotReady."""
     clip = stored.get(tx, clip_id)
     if clip.state is not ClipState.READY:
         where = Place("clip_id", f"is {clip.state.value}")
@@ -53,12 +53,15 @@ def find_ready(tx: Tx, clip_id: str) -> ClipRecord:
 
 
 def descriptors_of(tx: Tx, clip: ClipRecord, names: Sequence[str]) -> dict[str, FloatArray]:
-    """Stored arrays of a clip by name. Raises ClipNotReady where this version of Kinedex cannot
-    use them, since the clip waits to be analysed again."""
-    found = usable_arrays.get_some(tx, clip.id, names)
-    missing = [name for name in names if name not in found]
+    """The stored arrays of a clip, by name.
+
+    Raises ClipNotReady if this version of Kinedex cannot use one of them: then the clip waits
+    for a new analysis.
+    """
+    usable = usable_arrays.get_some(tx, clip.id, names)
+    missing = [name for name in names if name not in usable]
     if missing:
-        told = "was analyzed by another version of Kinedex and is to be analyzed again"
-        where = Place("clip_id", f"{told}: {', '.join(missing)} cannot be used")
-        raise ClipNotReady(f"The clip {clip.id} {told}; ask again after that.", places=[where])
-    return {name: found[name] for name in names}
+        reason = "was analyzed by another version of Kinedex and will be analyzed again"
+        where = Place("clip_id", f"{reason}: {', '.join(missing)} cannot be used")
+        raise ClipNotReady(f"The clip {clip.id} {reason}; try again after that.", places=[where])
+    return {name: usable[name] for name in names}

@@ -1,4 +1,4 @@
-"""The canonical motion of a ready clip, as it was stored by its ingest."""
+"""The canonical motion of a ready clip: how it becomes stored arrays, and how it is read back."""
 
 from __future__ import annotations
 
@@ -20,11 +20,12 @@ POSITIONS, PARENTS, JOINT_NAMES = "positions", "parents", "joint_names"
 
 
 def motion_arrays(motion: Motion) -> dict[str, NDArray[Any]]:
-    """What of a motion is stored beside its descriptors.
+    """The arrays to store for a motion, besides its descriptors.
 
-    positions: (frames, joints, 3) float32 metres; parents: (joints,) int32; joint_names: JSON
-    text as bytes.
+    positions: (frames, joints, 3) float32, meters, Y up; parents: (joints,) int32, -1 for a root;
+    joint_names: (bytes,) uint8, JSON text of a list of names.
     """
+    # As bytes, since the store holds numeric arrays only.
     names = json.dumps(motion.names).encode()
     return {
         POSITIONS: motion.positions.astype(np.float32),
@@ -40,8 +41,8 @@ def load_motion(lib: Library, clip: ClipRecord) -> Motion:
 
 
 def read_motion(tx: Tx, clip: ClipRecord) -> Motion:
-    """As `load_motion`, in the caller's transaction."""
-    check()  # who reads many, and works on each, may stop here
+    """The same as `load_motion`, in the caller's transaction."""
+    check()  # a caller that reads many motions stops here after its deadline
     positions, parents, text = (
         arrays.get_one(tx, clip.id, name) for name in (POSITIONS, PARENTS, JOINT_NAMES)
     )

@@ -1,14 +1,14 @@
-"""How a clip that was synthesised is told from what people did."""
+"""The mark of clips that Kinedex synthesized. All other clips are recordings of people."""
 
 from __future__ import annotations
 
 from app.store.clips.record import ClipRecord
 
 SYNTHESIZED = "synthesized"
-"""The `source` of such a clip. It is searched like any other, but no model learns from it: a
-model of what models made would confirm itself."""
+"""The `source` of a synthesized clip. Searches find it like any other clip, but no model learns
+from it: a model that learns from the output of a model would confirm its own errors."""
 
 
 def is_synthesized(clip: ClipRecord) -> bool:
-    """Whether a clip was made by us."""
+    """Whether Kinedex synthesized the clip."""
     return clip.source == SYNTHESIZED

@@ -1,1 +1,1 @@
-"""Who is it, what do they do, and which words fit."""
+"""Recognition of person and task, and words that describe a motion."""

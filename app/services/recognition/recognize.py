@@ -1,4 +1,4 @@
-"""Who does what, in which words."""
+"""Recognizes the person and the task of a motion, and words that describe it."""
 
 from __future__ import annotations
 
@@ -34,7 +34,11 @@ WordScores = tuple[tuple[str, float], ...]
 
 @dataclass(frozen=True, slots=True)
 class RecognizeQuery:
-    """The motion to recognize, and what is known of it already; method: one of METHODS."""
+    """The motion to recognize.
+
+    known_person, known_task: labels that the client already knows; the answer contains them;
+    method: one of METHODS.
+    """
 
     source: QuerySource
     known_person: str | None = None
@@ -52,9 +56,9 @@ class Recognized:
 
 
 def recognize(lib: Library, query: RecognizeQuery) -> Recognized:
-    """Who moves, what they do, and which words describe it.
+    """The person, the task and the words of a motion.
 
-    Words are left out where no word model could be fitted. Raises BadField, ClipNotFound,
+    There are no words if no word model could be fitted. Raises BadField, ClipNotFound,
     ClipNotReady, ModelNotFitted, and BadContent for an upload that cannot be used.
     """
     if query.method not in METHODS:
@@ -68,12 +72,12 @@ def recognize(lib: Library, query: RecognizeQuery) -> Recognized:
     names = INPUTS.get(query.method, (SAMPLE,))
     arrays = describe(lib, query.source, (*names, STATISTICS)).arrays
     sample = np.concatenate([arrays[name] for name in names])
-    found = _who_does_what(lib, sample, query)
-    return Recognized(found.person, found.task, words_of(lib, arrays[STATISTICS]))
+    answers = _person_and_task(lib, sample, query)
+    return Recognized(answers.person, answers.task, words_of(lib, arrays[STATISTICS]))
 
 
-def _who_does_what(lib: Library, sample: FloatArray, query: RecognizeQuery) -> Recognition:
-    """Person and task of a clip, by its method's INPUTS."""
+def _person_and_task(lib: Library, sample: FloatArray, query: RecognizeQuery) -> Recognition:
+    """The recognized person and task; sample: the concatenated INPUTS of the query's method."""
     person = fields.text("known_person", query.known_person)
     task = fields.text("known_task", query.known_task)
     if query.method == "multilinear":
@@ -87,6 +91,7 @@ def _who_does_what(lib: Library, sample: FloatArray, query: RecognizeQuery) -> R
         (found,) = recognize_by_tensor(tensor, sample[None], person, task)
     else:
         found = recognize_by_default(lib.models.recognizer(lib.store).model, sample, person, task)
+    # A model that was fitted before the setting was switched off may be active for a moment.
     if not lib.settings.recognize_persons:
         return replace(found, person=NO_ANSWER)
     return found

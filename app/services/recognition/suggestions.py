@@ -76,8 +76,11 @@ def accept(lib: Library, clip_id: str, words: Sequence[str] | None = None) -> Cl
 
 
 def complete(lib: Library, beginning: str, limit: int = 10) -> list[LabelCount]:
-    """The library's words that begin with `beginning`, then those that contain it, the most
-    frequent first. If there are none: the words of which it is an inflected form."""
+    """The library's words that begin with `beginning`, then words that contain it.
+
+    In each group the most frequent words are first. If there are no such words, `beginning` may
+    be an inflected word ("walked"): then these are its base forms ("walk").
+    """
     typed, carried = normalize_word(beginning), labels.words(lib)
     found = [word for word in carried if typed in word.name]
     if not found:

@@ -52,14 +52,14 @@ class Material:
 
 def material_of(lib: Library, model: Synthesis, plan: Plan) -> Material:
     """The material for a plan. Raises NotEnoughLabels if its clips were removed."""
-    away = dict(zip(model.ids, model.distances(plan.shape), strict=True))
-    own = _still_there(lib, sorted(plan.own, key=lambda clip: away.get(clip, np.inf)))
-    takes = _still_there(lib, sorted(plan.takes, key=lambda clip: away.get(clip, np.inf)))
+    distances = dict(zip(model.ids, model.distances(plan.shape), strict=True))
+    own = _still_ready(lib, sorted(plan.own, key=lambda clip: distances.get(clip, np.inf)))
+    takes = _still_ready(lib, sorted(plan.takes, key=lambda clip: distances.get(clip, np.inf)))
     if not own or not takes:
         raise NotEnoughLabels("The source clips of this motion were removed: fit the models again.")
     donors = same_body([_donor(lib, clip) for clip in own[:MAX_DONORS]])
     take, take_shape = None, None
-    if plan.shape[-1] < 0.5:
+    if plan.shape[-1] < 0.5:  # the last number of a shape says whether the motion is cyclic
         take, take_shape = _detail(lib, takes, plan.shape)
     licenses = {clip.license for clip in (*own, *takes)}
     words = set.intersection(*(set(clip.words) for clip in takes))
@@ -74,44 +74,48 @@ def material_of(lib: Library, model: Synthesis, plan: Plan) -> Material:
     )
 
 
-def _still_there(lib: Library, clip_ids: list[str]) -> list[ClipRecord]:
-    found = []
+def _still_ready(lib: Library, clip_ids: list[str]) -> list[ClipRecord]:
+    ready = []
     for clip_id in clip_ids:
         try:
-            found.append(ready_clip(lib, clip_id))
+            ready.append(ready_clip(lib, clip_id))
         except (ClipNotFound, ClipNotReady):
             continue  # removed, or in a new analysis, since the fit of the models
-    return found
+    return ready
 
 
 def _detail(
-    lib: Library, takes: list[ClipRecord], wanted: FloatArray
+    lib: Library, takes: list[ClipRecord], target: FloatArray
 ) -> tuple[FloatArray | None, FloatArray | None]:
-    """The non-cyclic take that is nearest to the wanted motion, as moments and as shape."""
+    """The first non-cyclic take as moments (n, 43) and as shape (1378,); None if all are cyclic.
+
+    takes: sorted by their distance to the target; target: (1378,) the predicted shape.
+    """
     with lib.store.read() as tx:
         shapes = usable_arrays.get_many(tx, [clip.id for clip in takes], SHAPE)
     for clip in takes:
         shape = shapes.get(clip.id)
         if shape is not None and shape[-1] < 0.5:
-            return detail_of(load_motion(lib, clip), shape, wanted)
+            return detail_of(load_motion(lib, clip), shape, target)
     return None, None
 
 
 def detail_of(
-    motion: Motion, shape: FloatArray, wanted: FloatArray
+    motion: Motion, shape: FloatArray, target: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """(n, 43) moments of a take and its shape (1378,), prepared for correction to `wanted` (1378,).
+    """(n, 43) moments of a take and its shape (1378,), prepared for correction to `target` (1378,).
 
     If a take begins with a pose that does not belong to it, it is used from its second frame. Its
-    shape has that pose as first moment, and the wanted shape may have it too, if it was learned
-    from such takes; there the correction of the second moment is used.
+    shape has that pose as first moment. The target shape may have it too, if the model learned from
+    takes with this pose. So the first moment gets the same correction as the second one.
     """
     moving = without_posed_start(motion)
-    led = np.array(shape, dtype=np.float64)
+    prepared = np.array(shape, dtype=np.float64)
     if moving is not motion:
-        own, aim = (whole[:-2].reshape(SAMPLES, CHANNELS) for whole in (led, wanted))
+        # (SAMPLES, CHANNELS) views: the change of `own` changes `prepared`
+        own, aim = (whole[:-2].reshape(SAMPLES, CHANNELS) for whole in (prepared, target))
         own[0] = aim[0] - (aim[1] - own[1])
-    return moments_of(body_track(moving)), led
+    return moments_of(body_track(moving)), prepared
 
 
 def _donor(lib: Library, clip: ClipRecord) -> Donor:

@@ -89,7 +89,7 @@ def _of_clips(lib: Library, model: Synthesis, task: str, clip_ids: tuple[str, ..
     """A plan from these clips alone, as if the library had no other clip of the person."""
     by_id = ready_clips(lib, clip_ids, "clip_ids")
     found, own = list(by_id.values()), tuple(by_id)
-    person = _whose(found)
+    person = _person_of(found)
     given = _by_task(lib, model, found, task)
     predicted = predict(model, given, task, exclude=(person,) if person else ())
     others = tuple(name for name in model.who_did(task) if name != person)
@@ -123,7 +123,8 @@ def _plan(
     )
 
 
-def _whose(found: list[ClipRecord]) -> str | None:
+def _person_of(found: list[ClipRecord]) -> str | None:
+    """The person of the clips, None if they have none. Raises BadField for several persons."""
     persons = sorted({clip.person for clip in found if clip.person})
     if len(persons) > 1:
         raise fields.bad_field("clip_ids", f"must be of one person, not of {', '.join(persons)}")
@@ -133,7 +134,7 @@ def _whose(found: list[ClipRecord]) -> str | None:
 def _by_task(
     lib: Library, model: Synthesis, found: list[ClipRecord], task: str
 ) -> dict[str, FloatArray]:
-    """The mean shapes of the clips by task, without the wanted task."""
+    """(1378,) mean shapes of the clips by task, without the task to synthesize."""
     with lib.store.read() as tx:
         shapes = usable_arrays.get_many(tx, [clip.id for clip in found], SHAPE)
     by_task: dict[str, list[FloatArray]] = {}

@@ -65,8 +65,8 @@ def judge(
 ) -> Quality:
     """The quality of a synthesized motion; shape: (1378,) from its analysis."""
     model = fitted.model
-    away = model.distances(shape)
-    first = int(np.argmin(away))
+    distances = model.distances(shape)
+    first = int(np.argmin(distances))
     person, task = model.labels_of(first)
     with lib.store.read() as tx:
         record = models.get(tx, fitted.id)
@@ -82,7 +82,7 @@ def judge(
         nearest=nearest,
         nearest_person=person,
         nearest_task=task,
-        distance=float(away[first]),
+        distance=float(distances[first]),
         person_is_right=None if plan.person is None else person == plan.person,
         task_is_right=task == plan.task,
         expected_hit=expected.get("hit"),
@@ -102,11 +102,11 @@ def expected_of(figures: dict[str, Any], plan: Plan) -> dict[str, Any]:
     nearest larger number that has such motions. Without any, the hits are of all motions.
     """
     rows = figures.get("held_out", {}).get(plan.kind.value, [])
-    like = "averaged" if plan.follows is None else "followed"
-    parted = [{**row, **row[like]} for row in rows if row[like]["trials"]]
+    group = "averaged" if plan.follows is None else "followed"
+    group_rows = [{**row, **row[group]} for row in rows if row[group]["trials"]]
     is_new_task = plan.kind is SynthesisKind.NEW_TASK
     given = len(plan.given_persons if is_new_task else plan.given_tasks)
-    rows = parted or rows
+    rows = group_rows or rows
     fewer = [row for row in rows if row["given"] <= given]
     return dict(fewer[-1]) if fewer else dict(rows[0]) if rows else {}
 

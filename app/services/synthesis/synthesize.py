@@ -159,8 +159,8 @@ def _as_motion(animation: Animation, joints: dict[JointRole, int]) -> Motion:
 
 
 def _stored(lib: Library, made: Synthesized, material: Material, plan: Plan) -> Synthesized:
-    """The motion as a clip like any other, marked by its source."""
-    said = {
+    """Store the motion as a clip. Its `source` marks it as synthesized."""
+    values = {
         "name": made.name,
         "person": plan.person,
         "task": plan.task,
@@ -170,5 +170,5 @@ def _stored(lib: Library, made: Synthesized, material: Material, plan: Plan) -> 
         "unit": "cm",
         "roles": material.roles,
     }
-    created = clips.create_clip(lib, io.BytesIO(made.bvh), f"{made.name}.bvh", said)
+    created = clips.create_clip(lib, io.BytesIO(made.bvh), f"{made.name}.bvh", values)
     return replace(made, clip=created.clip, job=created.job, is_new=created.is_new)

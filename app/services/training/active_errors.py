@@ -9,7 +9,7 @@ from app.errors import ModelNotFitted
 from app.models.recognition.calibration import Calibration
 from app.models.recognition.perera import TensorRecognizer
 from app.models.recognition.recognizer import Recognizer
-from app.services.library.fitted_models import TELLING_UNKNOWN, Fitted, ModelKind
+from app.services.library.fitted_models import KINDS_WITH_UNKNOWN, Fitted, ModelKind
 from app.services.library.library import Library
 from app.store.models import ModelRecord
 
@@ -33,7 +33,7 @@ def active_errors(lib: Library, record: ModelRecord) -> Mapping[str, Errors] | N
 
     None for models that call nothing unknown, and for a model that was just replaced.
     """
-    if record.kind not in TELLING_UNKNOWN:
+    if record.kind not in KINDS_WITH_UNKNOWN:
         return None
     try:
         fitted = _active(lib, record.kind)

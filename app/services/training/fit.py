@@ -23,12 +23,12 @@ from app.models.recognition.perera import fit_tensor_recognizer
 from app.models.recognition.recognizer import fit_recognizer
 from app.models.words.language.wordnet import Meanings
 from app.models.words.library import fit_library_words
-from app.services.library.fitted_models import SHAPES_FITTED, ModelKind, holds_persons, input_shapes
-from app.services.library.precomputed_rows import known_arrays
+from app.services.library.fitted_models import INPUT_SHAPES, ModelKind, holds_persons, input_shapes
+from app.services.library.precomputed_rows import precomputed_arrays
 from app.services.training.annotated import read_annotated
 from app.services.training.keypose_learning import learn_keyposes
 from app.services.training.models import enqueue_fit
-from app.services.training.synthesis_fit import fit_on
+from app.services.training.synthesis_fit import fit_synthesis_on
 from app.services.training.training_set import TrainingSet, read_training_set
 from app.store import models
 from app.store.clips import labels
@@ -88,6 +88,7 @@ def _fit_one(store: Store, training: TrainingSet, kind: ModelKind, wordnet: bool
         _log.exception("the %s model could not be fitted", kind.value)
         return {"outcome": "failed", "reason": f"{type(defect).__name__}: {defect}"}
     with store.write() as tx:
+        # Somebody may have asked to forget a person during the fit, which takes long.
         if holds_persons(kind) and _is_someone_gone(tx, training):
             enqueue_fit(tx)
             return {"outcome": "skipped", "reason": "A person was removed during the fit."}
@@ -98,7 +99,7 @@ def _fit_one(store: Store, training: TrainingSet, kind: ModelKind, wordnet: bool
                 "model": fit.meta,
                 "figures": fit.figures,
                 "settings": before.settings,
-                SHAPES_FITTED: input_shapes(),
+                INPUT_SHAPES: input_shapes(),
             },
             arrays=fit.arrays,
             library_version=training.library_version,
@@ -124,12 +125,13 @@ def _fit_words(training: TrainingSet, before: Before) -> Fit:
     fitted = fit_library_words(
         training.symbols, training.statistics, training.label_sets, training.groups
     )
-    known = Meanings.from_meta(before.meta.get("meanings", {}))
-    meanings = known.of(fitted.words.vocabulary.words, look_up=before.wordnet)
+    # Meanings are looked up once, since a look-up is slow: the model before has them already.
+    earlier = Meanings.from_meta(before.meta.get("meanings", {}))
+    meanings = earlier.of(fitted.words.vocabulary.words, look_up=before.wordnet)
     model = replace(fitted.words, meanings=meanings)
     arrays, meta = model.to_arrays()
     ids = [clip.id for clip in training.clips]
-    arrays |= known_arrays(ids, model.word_scores(training.statistics), fitted.points)
+    arrays |= precomputed_arrays(ids, model.word_scores(training.statistics), fitted.points)
     return Fit(arrays, meta, word_figures(training))
 
 
@@ -197,7 +199,7 @@ def _fit_keyposes(_: TrainingSet, before: Before) -> Fit:
 
 
 def _fit_synthesis(training: TrainingSet, before: Before) -> Fit:
-    model, figures = fit_on(before.store, training)
+    model, figures = fit_synthesis_on(before.store, training)
     arrays, meta = model.to_arrays()
     return Fit(arrays, meta, figures)
 
@@ -209,7 +211,7 @@ def _fit_metric(factor: Factor, training: TrainingSet, _: Before) -> Fit:
     model = LearnedMetric(fit_axes(described, labels, factor), judged.calibration)
     arrays, meta = model.to_arrays()
     ids = [clip.id for clip in training.clips]
-    arrays |= known_arrays(ids, None, model.axes.project(described))
+    arrays |= precomputed_arrays(ids, None, model.axes.project(described))
     return Fit(arrays, meta, judged.figures)
 
 

@@ -19,7 +19,7 @@ from app.models.keyposes.thresholds import (
 )
 from app.services.training.annotated import AnnotatedClip
 
-NOBODY = "No ready clip has keyposes that a person annotated."
+NO_ANNOTATED_CLIP = "No ready clip has keyposes that a person annotated."
 
 
 def learn_keyposes(
@@ -27,11 +27,12 @@ def learn_keyposes(
 ) -> tuple[KeyposeThresholds, dict[str, Any]]:
     """Learn the thresholds that find the annotated keyposes best; returns figures as JSON too.
 
-    Figures by method: of the thresholds `learned` from the other recordings, and of the `usual`
-    ones. Raises NotEnoughLabels without annotated clips.
+    The figures of each method are of two kinds: "learned", of thresholds that were learned from the
+    other recordings, and "usual", of the default thresholds. Raises NotEnoughLabels without
+    annotated clips.
     """
     if not annotated:
-        raise NotEnoughLabels(NOBODY)
+        raise NotEnoughLabels(NO_ANNOTATED_CLIP)
     groups = [clip.group for clip in annotated]
     learned, figures = {}, {}
     for method in EnergyMethod:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.services import fields
-from app.services.library.fitted_models import FALSE_ACCEPT_RATE, TELLING_UNKNOWN
+from app.services.library.fitted_models import FALSE_ACCEPT_RATE, KINDS_WITH_UNKNOWN
 from app.services.library.library import Library
 from app.store import models as stored
 from app.store.database.engine import Tx
@@ -56,7 +56,7 @@ def set_false_accept_rate(lib: Library, model_id: str, rate: float | None) -> Mo
         raise fields.bad_field(FALSE_ACCEPT_RATE, "must be above 0 and below 1, or null")
     with lib.store.write() as tx:
         record = stored.get(tx, model_id)
-        if record.kind not in TELLING_UNKNOWN:
+        if record.kind not in KINDS_WITH_UNKNOWN:
             raise fields.bad_field(FALSE_ACCEPT_RATE, f"cannot be set for {record.kind} models")
         settings = {} if rate is None else {FALSE_ACCEPT_RATE: rate}
         return stored.set_settings(tx, model_id, settings)

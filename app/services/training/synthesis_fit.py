@@ -16,7 +16,7 @@ from app.store.store import Store
 SHAPE = "motion_shape"
 
 
-def fit_on(store: Store, training: TrainingSet) -> tuple[Synthesis, dict[str, Any]]:
+def fit_synthesis_on(store: Store, training: TrainingSet) -> tuple[Synthesis, dict[str, Any]]:
     """The model and its held-out figures, from the clips with a motion shape and both labels.
 
     Raises NotEnoughLabels if the labels are too few.

@@ -1,4 +1,4 @@
-"""A ready clip as an animated picture, as it is or reduced to a few dimensions."""
+"""A ready clip as an animated picture: the whole motion, or reduced to few dimensions."""
 
 from __future__ import annotations
 
@@ -54,6 +54,7 @@ def _part(positions: FloatArray, start: float | None, end: float | None) -> Floa
         raise fields.bad_field("start", f"must be below the duration, {duration:.3f} s")
     if start is not None and end is not None and end <= start:
         raise fields.bad_field("end", "must be after start")
+    # Whole frames that contain the part, at least one.
     first = math.floor((start or 0.0) * ANALYSIS_RATE)
     stop = len(positions) if end is None else math.ceil(end * ANALYSIS_RATE)
     return positions[first : max(stop, first + 1)]

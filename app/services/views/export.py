@@ -37,7 +37,7 @@ from app.services.library.library import Library
 from app.services.library.ready_clips import ready_clip
 from app.services.library.stored_motion import load_motion
 from app.services.views.export_format import ExportFormat, ExportSkeleton
-from app.services.views.frame_rates import wanted_rate
+from app.services.views.frame_rates import requested_rate
 from app.services.views.low_dimensional import Reduction, as_motion, reduce
 from app.store.clips.record import ClipRecord
 
@@ -77,31 +77,32 @@ def export(
     reduction: reduce the motion to few dimensions, on the 13 joint roles, by default at 30 Hz.
     Raises BadField, ClipNotFound, ClipNotReady, NotEnoughKeyposes.
     """
-    wanted = _choice("format", ExportFormat, format)
+    file_format = _choice("format", ExportFormat, format)
     body = _choice("skeleton", ExportSkeleton, skeleton)
     clip = ready_clip(lib, clip_id)
     source = clip.frame_rate or 1.0 if reduction is None else ANALYSIS_RATE
     joints = clip.joints or 0 if reduction is None else len(SUN_ROLES)
-    rate = wanted_rate(lib, clip, fps, source=source, joints=joints)
-    ending = "-canonical" if body is ExportSkeleton.CANONICAL else ""
+    rate = requested_rate(lib, clip, fps, source=source, joints=joints)
+    suffix = "-canonical" if body is ExportSkeleton.CANONICAL else ""
     if reduction is None:
         motion = load_motion(lib, clip)
     else:
-        found = reduce(lib, clip, reduction)
-        motion = as_motion(found, clip)
-        ending = f"-{found.basis.value}-{found.dimensions}dim{ending}"
+        reduced = reduce(lib, clip, reduction)
+        motion = as_motion(reduced, clip)
+        suffix = f"-{reduced.basis.value}-{reduced.dimensions}dim{suffix}"
     if body is ExportSkeleton.CANONICAL:
-        blocks = _of_animation(wanted, on_canonical_body(_resampled(motion, rate)), clip)
-    elif wanted in (ExportFormat.NPZ, ExportFormat.CSV):
+        blocks = _of_animation(file_format, on_canonical_body(_resampled(motion, rate)), clip)
+    elif file_format in (ExportFormat.NPZ, ExportFormat.CSV):
+        # These formats have positions only, so no rotations are read or solved.
         motion = _resampled(motion, rate)
         blocks = _of_positions(
-            wanted, _Positions(motion.names, motion.parents, motion.positions, rate)
+            file_format, _Positions(motion.names, motion.parents, motion.positions, rate)
         )
     elif reduction is None:
-        blocks = _of_animation(wanted, own_animation(lib, clip, motion, rate), clip)
+        blocks = _of_animation(file_format, own_animation(lib, clip, motion, rate), clip)
     else:
-        blocks = _of_animation(wanted, _solved(motion, rate), clip)
-    return Export(f"{_safe_stem(clip)}{ending}.{wanted.value}", blocks)
+        blocks = _of_animation(file_format, _solved(motion, rate), clip)
+    return Export(f"{_safe_stem(clip)}{suffix}.{file_format.value}", blocks)
 
 
 def _choice(field: str, kind: type[_Kind], value: str) -> _Kind:
@@ -119,7 +120,7 @@ def _resampled(motion: Motion, rate: float) -> Motion:
 
 
 def own_animation(lib: Library, clip: ClipRecord, motion: Motion, rate: float) -> Animation:
-    """The clip's joint rotations at `rate` Hz: those of its file, else solved from positions."""
+    """The clip's joint rotations at `rate` Hz: from its file, or else solved from positions."""
     if clip.format not in POSITION_FORMATS:
         try:
             recording = lib.pool.read(analysis_request(lib, clip))
@@ -136,25 +137,27 @@ def _solved(motion: Motion, rate: float) -> Animation:
     return animation_of_positions(motion.names, motion.parents, motion.positions, rate)
 
 
-def _of_animation(wanted: ExportFormat, animation: Animation, clip: ClipRecord) -> Iterable[bytes]:
-    if wanted is ExportFormat.BVH:
+def _of_animation(
+    file_format: ExportFormat, animation: Animation, clip: ClipRecord
+) -> Iterable[bytes]:
+    if file_format is ExportFormat.BVH:
         return write_animation_bvh(animation)
-    if wanted is ExportFormat.GLB:
+    if file_format is ExportFormat.GLB:
         return [write_glb(animation, clip.name, clip.license)]
     skeleton = animation.skeleton
     positions = animation.positions().astype(np.float32)
     return _of_positions(
-        wanted, _Positions(skeleton.names, skeleton.parents, positions, animation.frame_rate)
+        file_format, _Positions(skeleton.names, skeleton.parents, positions, animation.frame_rate)
     )
 
 
-def _of_positions(wanted: ExportFormat, tracks: _Positions) -> Iterable[bytes]:
-    if wanted is ExportFormat.NPZ:
-        return [write_npz(tracks.names, tracks.parents, tracks.positions, tracks.frame_rate)]
-    return write_csv(tracks.names, tracks.positions, tracks.frame_rate)
+def _of_positions(file_format: ExportFormat, motion: _Positions) -> Iterable[bytes]:
+    if file_format is ExportFormat.NPZ:
+        return [write_npz(motion.names, motion.parents, motion.positions, motion.frame_rate)]
+    return write_csv(motion.names, motion.positions, motion.frame_rate)
 
 
 def _safe_stem(clip: ClipRecord) -> str:
     """The clip's name as a file name that is valid on all systems."""
-    kept = "".join(c if c.isalnum() or c in " ._-()+" else "_" for c in clip.name)
-    return kept.strip(" ._")[:100] or clip.id
+    safe = "".join(c if c.isalnum() or c in " ._-()+" else "_" for c in clip.name)
+    return safe.strip(" ._")[:100] or clip.id

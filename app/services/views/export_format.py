@@ -15,7 +15,7 @@ class ExportFormat(StrEnum):
     NPZ = "npz"
     """NumPy arrays (see `app.formats.npz.reader`), meters, Y up."""
     CSV = "csv"
-    """A row a frame: time, then x, y, z of each joint; seconds, meters, Y up."""
+    """One row for each frame: time, then x, y, z of each joint; seconds, meters, Y up."""
 
 
 class ExportSkeleton(StrEnum):

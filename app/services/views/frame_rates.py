@@ -16,7 +16,7 @@ MAX_POSITIONS = 30_000_000
 joints has 26 million. The limit is 360 MB as float32."""
 
 
-def wanted_rate(
+def requested_rate(
     lib: Library, clip: ClipRecord, fps: float | None, *, source: float, joints: int
 ) -> float:
     """The frame rate: `fps`, or if it is None, the rate `source` (Hz) of the motion.
@@ -28,13 +28,15 @@ def wanted_rate(
         return source
     if not (math.isfinite(fps) and MIN_FPS <= fps <= MAX_FPS):
         raise fields.bad_field("fps", f"must be from {MIN_FPS:g} to {MAX_FPS:g}")
-    seconds, most = clip.duration or 0.0, max(lib.settings.max_frames, clip.frames or 0)
-    if fps * seconds > most:
-        raise fields.bad_field("fps", f"would make more than {most} frames")
+    # A clip may have more frames than the limit, if the limit was lowered after its upload.
+    seconds, max_frames = clip.duration or 0.0, max(lib.settings.max_frames, clip.frames or 0)
+    if fps * seconds > max_frames:
+        raise fields.bad_field("fps", f"would make more than {max_frames} frames")
+    # Resampling to a lower rate also costs work: it reads all frames of the source.
     if max(fps, source) * seconds * joints > MAX_POSITIONS:
         message = (
             f"{seconds:.0f} s of {joints} joints from {source:g} to {fps:g} Hz are too much work: "
-            f"at most {MAX_POSITIONS:,} positions, frames times joints, are read or made"
+            f"the limit is {MAX_POSITIONS:,} positions (frames times joints) before and after"
         )
         raise fields.bad_field("fps", message)
     return fps

@@ -1,4 +1,4 @@
-"""The keyposes of ready clips: those that are found, and those that people named."""
+"""The keyposes of ready clips: those that are found, and those that people annotated."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from app.models.keyposes.thresholds import USUAL, Thresholds
 from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray
 from app.services import fields
-from app.services.library.keypose_frames import store_keyposes, stored_beats
+from app.services.library.keypose_frames import store_keypose_arrays, stored_beats
 from app.services.library.library import Library
 from app.services.library.ready_clips import ready_clip
 from app.services.library.stored_motion import load_motion
@@ -35,10 +35,10 @@ class ThresholdSource(StrEnum):
     """The client gave it."""
 
     LEARNED = "learned"
-    """It was learned from the clips whose keyposes people named."""
+    """It was learned from the clips whose keyposes people annotated."""
 
     DEFAULT = "default"
-    """It is the usual one."""
+    """It is the default of this version of Kinedex."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +55,8 @@ class UsedThresholds:
 class KeyposesView:
     """Keyposes at the analysis rate (30 Hz), with the pose at each.
 
-    found: frames, times, beats and energy curves; poses: (keyposes, 13, 3) meters; named: times
-    of the keyposes that a person named, in seconds, None if nobody named any.
+    found: frames, times, beats and energy curves; poses: (keyposes, 13, 3) meters, Y up, in
+    SUN_ROLES order; named: times of the annotated keyposes, in seconds, None without annotation.
     """
 
     found: Keyposes
@@ -75,15 +75,14 @@ def view(
     *,
     weights: str = Weights.UNIFORM,
 ) -> KeyposesView:
-    """A clip's keyposes by Perera's thresholds T1 and T2.
+    """A clip's keyposes by the thresholds T1 and T2 (Perera 2009).
 
-    A threshold of None is the learned one, or the usual one if none was learned.
-
-    Raises BadField, ClipNotFound, ClipNotReady.
+    method: one of METHODS; weights: one of WEIGHTS; t1, t2: None is the learned threshold, or the
+    default one if none was learned. Raises BadField, ClipNotFound, ClipNotReady.
     """
-    for name, value, known in (("method", method, METHODS), ("weights", weights, WEIGHTS)):
-        if value not in known:
-            raise fields.bad_field(name, f"must be one of {', '.join(known)}")
+    for name, value, allowed in (("method", method, METHODS), ("weights", weights, WEIGHTS)):
+        if value not in allowed:
+            raise fields.bad_field(name, f"must be one of {', '.join(allowed)}")
     used = thresholds(lib, method, t1, t2)
     clip = ready_clip(lib, clip_id)
     track = body_track(load_motion(lib, clip))
@@ -106,18 +105,20 @@ def thresholds(
     t1: float | None = None,
     t2: float | None = None,
 ) -> UsedThresholds:
-    """The thresholds for an energy method: the given ones, else the learned ones, else the usual
-    ones. Raises BadField."""
+    """The thresholds for an energy method.
+
+    Each is the given one, else the learned one, else the default one. Raises BadField.
+    """
     for name, value in (("t1", t1), ("t2", t2)):
         if value is not None and not (math.isfinite(value) and value > 0):
             raise fields.bad_field(name, "must be a number above 0")
     learned, version = _learned(lib, method)
-    otherwise = ThresholdSource.DEFAULT if learned is None else ThresholdSource.LEARNED
-    usual = learned or USUAL
+    fallback_source = ThresholdSource.DEFAULT if learned is None else ThresholdSource.LEARNED
+    fallback = learned or USUAL
     return UsedThresholds(
-        values=Thresholds(t1 or usual.t1, t2 or usual.t2),
-        t1_source=otherwise if t1 is None else ThresholdSource.GIVEN,
-        t2_source=otherwise if t2 is None else ThresholdSource.GIVEN,
+        values=Thresholds(t1 or fallback.t1, t2 or fallback.t2),
+        t1_source=fallback_source if t1 is None else ThresholdSource.GIVEN,
+        t2_source=fallback_source if t2 is None else ThresholdSource.GIVEN,
         model_version=version if t1 is None or t2 is None else None,
     )
 
@@ -131,7 +132,7 @@ def _learned(lib: Library, method: str) -> tuple[Thresholds | None, int | None]:
     return found, None if found is None else fitted.version
 
 
-def name_keyposes(lib: Library, clip_id: str, times: Sequence[float]) -> tuple[float, ...]:
+def annotate_keyposes(lib: Library, clip_id: str, times: Sequence[float]) -> tuple[float, ...]:
     """Store the times of a clip's keyposes, in seconds; an empty list removes the annotation.
 
     The data that depend on the keyposes of a ready clip are updated at once. Raises BadField for
@@ -142,13 +143,14 @@ def name_keyposes(lib: Library, clip_id: str, times: Sequence[float]) -> tuple[f
         before = clips.get(tx, clip_id)
     _check_within(before, tidy)
     # computed before the transaction, so that no other writer waits for it
-    instead = np.array(tidy) if tidy else _found_anew(lib, before)
+    new_times = np.array(tidy) if tidy else _found_times(lib, before)
     with lib.store.write() as tx:
         now = clips.get(tx, clip_id)
         keypose_annotations.put(tx, clip_id, tidy)
-        is_same = bool(tidy) or now.analysis_input == before.analysis_input
-        if now.state is ClipState.READY and is_same and instead is not None:
-            store_keyposes(tx, now, instead)
+        # Found times are of the motion before; a client may have changed a hint meanwhile.
+        is_current = bool(tidy) or now.analysis_input == before.analysis_input
+        if now.state is ClipState.READY and is_current and new_times is not None:
+            store_keypose_arrays(tx, now, new_times)
     return tidy
 
 
@@ -158,8 +160,8 @@ def _check_within(clip: ClipRecord, times: tuple[float, ...]) -> None:
         raise fields.bad_field("times", message)
 
 
-def _found_anew(lib: Library, clip: ClipRecord) -> FloatArray | None:
-    """The keyposes found in a ready clip; None if its analysis is not done yet."""
+def _found_times(lib: Library, clip: ClipRecord) -> FloatArray | None:
+    """(k,) seconds of the keyposes found in a ready clip; None if the clip is not ready."""
     if clip.state is not ClipState.READY:
         return None
     track = body_track(load_motion(lib, clip))

@@ -29,7 +29,7 @@ from app.services.library.keypose_frames import keypose_frames
 from app.services.library.library import Library
 from app.services.library.ready_clips import ready_clip, ready_clips
 from app.services.library.stored_motion import load_motion
-from app.services.views.frame_rates import wanted_rate
+from app.services.views.frame_rates import requested_rate
 from app.services.views.views import MotionView
 from app.store.clips.record import ClipRecord
 
@@ -101,36 +101,36 @@ class ReducedView:
     original_plausibility: Plausibility
 
 
-def view(lib: Library, clip_id: str, wanted: Reduction, fps: float | None = None) -> ReducedView:
+def view(lib: Library, clip_id: str, reduction: Reduction, fps: float | None = None) -> ReducedView:
     """A clip reduced to few dimensions, resampled by time to `fps` (default 30 Hz).
 
     Raises BadField, ClipNotFound, ClipNotReady, NotEnoughKeyposes.
     """
     clip = ready_clip(lib, clip_id)
     rate = frame_rate(lib, clip, fps)
-    found = reduce(lib, clip, wanted)
-    track = found.reduced
+    result = reduce(lib, clip, reduction)
+    track = result.reduced
     names = tuple(role.value for role in SUN_ROLES)
     positions = resample(track.positions, track.rate, rate)
     return ReducedView(
-        found,
+        result,
         MotionView(rate, names, SUN_PARENTS, positions.astype(np.float32)),
-        resample(found.eigen_motion, track.rate, rate),
+        resample(result.eigen_motion, track.rate, rate),
         judge_poses(track.local),
-        judge_poses(found.original.local),
+        judge_poses(result.original.local),
     )
 
 
-def reduce(lib: Library, clip: ClipRecord, wanted: Reduction) -> Reduced:
-    """A ready clip's motion reduced to few dimensions.
+def reduce(lib: Library, clip: ClipRecord, reduction: Reduction) -> Reduced:
+    """A ready clip's motion reduced to few dimensions (Perera 2009).
 
     Raises BadField, ClipNotFound, ClipNotReady, NotEnoughKeyposes.
     """
-    basis = _checked(wanted)
+    basis = _checked_basis(reduction)
     track = body_track(load_motion(lib, clip))
-    poses, local = _model_poses(lib, clip, track, wanted, basis)
+    poses, local = _model_poses(lib, clip, track, reduction, basis)
     model = eigen_model(local)
-    dimensions = wanted.dimensions or min(PAPER_DIMENSIONS, model.poses)
+    dimensions = reduction.dimensions or min(PAPER_DIMENSIONS, model.poses)
     if dimensions > model.poses:
         message = f"must be from 1 to {model.poses}, the poses of the model"
         raise fields.bad_field("dimensions", message)
@@ -154,102 +154,108 @@ def keyposes_of(lib: Library, clip: ClipRecord, model_clips: Sequence[str] = ())
     Raises BadField, ClipNotFound, ClipNotReady.
     """
     _check_clips(model_clips)
-    found: Keyposes = {}
+    frames: Keyposes = {}
     clips = ready_clips(lib, model_clips, "model_clips") or {clip.id: clip}
-    for clip_id, of_model in clips.items():
-        check()
-        track = body_track(load_motion(lib, of_model))
-        found[clip_id] = keypose_frames(lib, clip_id, track).tolist()
-    return found
+    for clip_id, model_clip in clips.items():
+        check()  # many clips take long: stop after the deadline of the request
+        track = body_track(load_motion(lib, model_clip))
+        frames[clip_id] = keypose_frames(lib, clip_id, track).tolist()
+    return frames
 
 
 def frame_rate(lib: Library, clip: ClipRecord, fps: float | None) -> float:
     """`fps`, or 30 Hz if it is None. Raises BadField for a rate that is not possible."""
-    return wanted_rate(lib, clip, fps, source=ANALYSIS_RATE, joints=len(SUN_ROLES))
+    return requested_rate(lib, clip, fps, source=ANALYSIS_RATE, joints=len(SUN_ROLES))
 
 
-def as_motion(found: Reduced, clip: ClipRecord) -> Motion:
-    """The reduced motion for files: a skeleton of the 13 joint roles, each after its parent, at
-    30 Hz and in the size of the clip."""
+def as_motion(result: Reduced, clip: ClipRecord) -> Motion:
+    """The reduced motion for files, at 30 Hz, in meters and in the size of the clip.
+
+    Its skeleton has the 13 joint roles, each after its parent, as file formats need it.
+    """
     order = _parents_first()
-    place = {joint: index for index, joint in enumerate(order)}
+    new_index = {joint: index for index, joint in enumerate(order)}
     missing = tuple(JointRole(role) for role in clip.missing_roles)
     roles = [SUN_ROLES[joint] for joint in order]
     return Motion(
         format=clip.format or "",
         names=tuple(role.value for role in roles),
-        parents=np.array([place.get(SUN_PARENTS[joint], -1) for joint in order]),
-        positions=found.reduced.positions[:, order].astype(np.float32),
+        parents=np.array([new_index.get(SUN_PARENTS[joint], -1) for joint in order]),
+        positions=result.reduced.positions[:, order].astype(np.float32),
         roles={role: index for index, role in enumerate(roles) if role not in missing},
         missing_roles=missing,
-        frame_rate=found.reduced.rate,
+        frame_rate=result.reduced.rate,
         declared_frame_rate=None,
         metres_per_unit=1.0,
     )
 
 
 def _parents_first() -> list[int]:
-    """Sun's joints, each after its parent."""
+    """The indexes of the 13 joint roles, sorted so that each parent is before its children."""
     order = [joint for joint, parent in enumerate(SUN_PARENTS) if parent < 0]
-    for joint in order:
+    for joint in order:  # `order` grows in the loop, which visits the new joints too
         order += [child for child, parent in enumerate(SUN_PARENTS) if parent == joint]
     return order
 
 
 def _model_poses(
-    lib: Library, clip: ClipRecord, track: BodyTrack, wanted: Reduction, basis: Basis
+    lib: Library, clip: ClipRecord, track: BodyTrack, reduction: Reduction, basis: Basis
 ) -> tuple[tuple[ModelPose, ...], FloatArray]:
-    """The K poses of the model, and their joint positions (K, 13, 3) in body lengths."""
+    """The K poses of the model, and their positions (K, 13, 3) in the body frame, body lengths."""
     poses: list[ModelPose] = []
     local: list[FloatArray] = []
-    counts: dict[str, int] = {}
-    asked = tuple(wanted.keyposes or wanted.model_clips)
-    clips = ready_clips(lib, asked, "model_clips") or {clip.id: clip}
-    for clip_id, of_model in clips.items():
-        check()
-        found = track
+    keypose_counts: dict[str, int] = {}
+    model_ids = tuple(reduction.keyposes or reduction.model_clips)
+    clips = ready_clips(lib, model_ids, "model_clips") or {clip.id: clip}
+    for clip_id, model_clip in clips.items():
+        check()  # many clips take long: stop after the deadline of the request
+        own_track = track
         if clip_id != clip.id:
-            found = body_track(load_motion(lib, of_model))
-        if wanted.keyposes is None:
-            frames = keypose_frames(lib, clip_id, found)
+            own_track = body_track(load_motion(lib, model_clip))
+        if reduction.keyposes is None:
+            frames = keypose_frames(lib, clip_id, own_track)
         else:
-            frames = _within(wanted.keyposes[clip_id], found)
-        counts[clip_id] = len(frames)
-        count = wanted.poses or len(frames)
+            frames = _frames_within(reduction.keyposes[clip_id], own_track)
+        keypose_counts[clip_id] = len(frames)
+        # The uniform basis has as many poses as the keypose basis, so that both can be compared.
+        count = reduction.poses or len(frames)
         if basis is Basis.UNIFORM and count:
-            frames = uniform_frames(found.frames, min(count, found.frames))
-        poses += [ModelPose(clip_id, float(frame / found.rate)) for frame in frames]
-        local.append(found.local[frames])
+            frames = uniform_frames(own_track.frames, min(count, own_track.frames))
+        poses += [ModelPose(clip_id, float(frame / own_track.rate)) for frame in frames]
+        local.append(own_track.local[frames])
     if len(poses) < MIN_POSES:
-        raise _too_few(counts, len(poses))
+        raise _too_few(keypose_counts, len(poses))
     return tuple(poses), np.concatenate(local)
 
 
-def _within(frames: Sequence[int], track: BodyTrack) -> IntArray:
-    """The stored frames that the clip still has; it may have changed in a new analysis."""
+def _frames_within(frames: Sequence[int], track: BodyTrack) -> IntArray:
+    """The stored frames that the clip still has; a new analysis may have made it shorter."""
     return np.array([frame for frame in frames if 0 <= frame < track.frames], dtype=np.int64)
 
 
-def _too_few(counts: dict[str, int], poses: int) -> NotEnoughKeyposes:
+def _too_few(keypose_counts: dict[str, int], poses: int) -> NotEnoughKeyposes:
     return NotEnoughKeyposes(
-        f"A model needs at least {MIN_POSES} poses; found {poses}. Take other model_clips, "
+        f"A model needs at least {MIN_POSES} poses; found {poses}. Use other model_clips, "
         "or basis=uniform with a number of poses, or annotate the keyposes.",
-        places=[Place("model_clips", f"{clip_id}: keyposes: {n}") for clip_id, n in counts.items()],
+        places=[
+            Place("model_clips", f"{clip_id}: keyposes: {count}")
+            for clip_id, count in keypose_counts.items()
+        ],
     )
 
 
-def _checked(wanted: Reduction) -> Basis:
-    """The basis of a valid reduction. Raises BadField for an invalid one."""
+def _checked_basis(reduction: Reduction) -> Basis:
+    """The basis of a valid reduction. Raises BadField for an invalid reduction."""
     try:
-        basis = Basis(wanted.basis)
+        basis = Basis(reduction.basis)
     except ValueError:
         raise fields.bad_field("basis", f"must be one of {', '.join(Basis)}") from None
-    if wanted.dimensions is not None and wanted.dimensions < 1:
+    if reduction.dimensions is not None and reduction.dimensions < 1:
         raise fields.bad_field("dimensions", "must be at least 1")
-    _check_clips(wanted.model_clips)
-    if wanted.poses is not None and basis is not Basis.UNIFORM:
+    _check_clips(reduction.model_clips)
+    if reduction.poses is not None and basis is not Basis.UNIFORM:
         raise fields.bad_field("poses", "needs basis=uniform; the number of keyposes is fixed")
-    if wanted.poses is not None and not 1 <= wanted.poses <= MAX_POSES:
+    if reduction.poses is not None and not 1 <= reduction.poses <= MAX_POSES:
         raise fields.bad_field("poses", f"must be from 1 to {MAX_POSES}")
     return basis
 
@@ -261,7 +267,7 @@ def _check_clips(model_clips: Sequence[str]) -> None:
 
 def _shown(model: EigenModel, poses: FloatArray) -> FloatArray:
     """(n, 3) coordinates along the first three axes; 0 for axes that the model does not have."""
-    found = np.zeros((len(poses), PAPER_DIMENSIONS))
-    kept = min(PAPER_DIMENSIONS, model.poses)
-    found[:, :kept] = model.coordinates(poses, kept)
-    return found
+    coordinates = np.zeros((len(poses), PAPER_DIMENSIONS))
+    count = min(PAPER_DIMENSIONS, model.poses)
+    coordinates[:, :count] = model.coordinates(poses, count)
+    return coordinates

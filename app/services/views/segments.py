@@ -77,9 +77,9 @@ def list_segments(lib: Library, clip_id: str) -> Segments:
         SegmentCycle(number, run, first, stop - first, spans[first][0], spans[stop - 1][1])
         for number, (first, stop, run) in enumerate(found[SEGMENT_CYCLES].tolist())
     )
-    owner = {c.first + step: c.index for c in cycles for step in range(c.count)}
+    cycle_of = {c.first + step: c.index for c in cycles for step in range(c.count)}
     segments = tuple(
-        Segment(index, start, end, owner.get(index)) for index, (start, end) in enumerate(spans)
+        Segment(index, start, end, cycle_of.get(index)) for index, (start, end) in enumerate(spans)
     )
     return Segments(segments, cycles)
 

@@ -1,5 +1,5 @@
-"""The study of Perera's Table 2: which of two low-dimensional motions do people find nearer to the
-original?
+"""The study of Perera's Table 2: people choose the low-dimensional motion that is nearer to the
+original, of two.
 
 A pair shows a clip reduced to the same number of dimensions by keyposes and by uniform poses. Their
 sides are random. Neither the pair nor the form of its motions reveals them. Votes are counted by
@@ -104,6 +104,7 @@ def draw_pair(
     clip = ready_clip(lib, clip_id)
     keyposes = keyposes_of(lib, clip, model_clips)
     for basis in Basis:
+        # Errors must be raised here, and not when somebody looks at the pair.
         reduce(lib, clip, Reduction(dimensions, basis, keyposes=keyposes))
     key = json.dumps([clip_id, dimensions, keyposes])
     sequence = hashlib.sha256(key.encode()).hexdigest()
@@ -137,8 +138,8 @@ def motion(lib: Library, pair_id: str, side: Side, fps: float | None = None) -> 
     """
     pair = get_pair(lib, pair_id)
     rate = frame_rate(lib, ready_clip(lib, pair.clip_id), fps)
-    found = _reduced(lib, pair, side)
-    track = found.original if side is Side.ORIGINAL else found.reduced
+    result = _reduced(lib, pair, side)
+    track = result.original if side is Side.ORIGINAL else result.reduced
     positions = resample(track.positions, track.rate, rate).astype(np.float32)
     return MotionView(rate, tuple(role.value for role in SUN_ROLES), SUN_PARENTS, positions)
 
@@ -171,9 +172,9 @@ def vote(lib: Library, pair_id: str, choice: Choice | str, voter: str | None = N
         raise fields.bad_field("choice", f"must be one of {', '.join(Choice)}") from None
     if voter is not None and not 0 < len(voter) <= MAX_VOTER:
         raise fields.bad_field("voter", f"must have from 1 to {MAX_VOTER} characters")
-    known = None if voter is None else hashlib.sha256(voter.encode()).hexdigest()
+    voter_hash = None if voter is None else hashlib.sha256(voter.encode()).hexdigest()
     with lib.store.write() as tx:
-        return stored.add_vote(tx, stored.get_pair(tx, pair_id), chosen, known)
+        return stored.add_vote(tx, stored.get_pair(tx, pair_id), chosen, voter_hash)
 
 
 def tally(lib: Library, clip_id: str | None = None) -> StudyTally:
@@ -188,12 +189,13 @@ def tally(lib: Library, clip_id: str | None = None) -> StudyTally:
         by_sequence.setdefault(count.sequence, []).append(count)
     sequences = [
         SequenceTally(
-            found[0].clip_id, names[found[0].clip_id].name, found[0].dimensions, _tally(found)
+            group[0].clip_id, names[group[0].clip_id].name, group[0].dimensions, _tally(group)
         )
-        for found in by_sequence.values()
+        for group in by_sequence.values()
     ]
-    sequences.sort(key=lambda one: (one.name, one.clip_id, one.dimensions))
+    sequences.sort(key=lambda sequence: (sequence.name, sequence.clip_id, sequence.dimensions))
     left = sum(count.votes for count in counts if count.choice is Choice.LEFT)
+    # "same" prefers no side, so it does not count in the shares
     decided = sum(count.votes for count in counts if count.choice is not Choice.SAME)
     return StudyTally(
         tuple(sequences[:MAX_SEQUENCES]), _tally(counts), left / decided if decided else None
@@ -216,7 +218,7 @@ def _tally(counts: Iterable[VoteCount]) -> Tally:
 
 
 def _chosen(count: VoteCount) -> Basis | None:
-    """The basis of a choice; None for neither."""
+    """The basis of the chosen side; None if the voter chose "same"."""
     left = Basis(count.left_basis)
     if count.choice is Choice.SAME:
         return None

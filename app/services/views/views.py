@@ -16,7 +16,7 @@ from app.services.figures.thumbnail import thumbnail
 from app.services.library.library import Library
 from app.services.library.ready_clips import ready_clip
 from app.services.library.stored_motion import load_motion
-from app.services.views.frame_rates import wanted_rate
+from app.services.views.frame_rates import requested_rate
 from app.store.clips import arrays
 
 CONVERGENCE = "msv_convergence"
@@ -24,7 +24,11 @@ CONVERGENCE = "msv_convergence"
 
 @dataclass(frozen=True, slots=True)
 class MotionView:
-    """A motion to draw: positions (frames, joints, 3) float32, meters, Y up; parents, -1 a root."""
+    """A motion to draw.
+
+    frame_rate: Hz; parents: (joints,) index of each joint's parent, -1 for a root; positions:
+    (frames, joints, 3) float32, meters, Y up.
+    """
 
     frame_rate: float
     joint_names: tuple[str, ...]
@@ -54,15 +58,15 @@ class DescriptorView:
 
 
 def motion(lib: Library, clip_id: str, fps: float | None = None, joints: str = "all") -> MotionView:
-    """A clip's motion, resampled by time to `fps`, all joints or Sun's 13 ("roles").
+    """A clip's motion, resampled by time to `fps` (default: its own rate).
 
-    Raises BadField, ClipNotFound, ClipNotReady.
+    joints: "all", or "roles" for the 13 joint roles. Raises BadField, ClipNotFound, ClipNotReady.
     """
     if joints not in ("all", "roles"):
         raise fields.bad_field("joints", "must be all or roles")
     clip = ready_clip(lib, clip_id)
     count = len(SUN_ROLES) if joints == "roles" else clip.joints or 0
-    rate = wanted_rate(lib, clip, fps, source=clip.frame_rate or 1.0, joints=count)
+    rate = requested_rate(lib, clip, fps, source=clip.frame_rate or 1.0, joints=count)
     stored = load_motion(lib, clip)
     names, parents, positions = stored.names, tuple(stored.parents.tolist()), stored.positions
     if joints == "roles":

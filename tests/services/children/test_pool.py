@@ -1,4 +1,4 @@
-"""Children that are killed, stopped, cancelled or late cost their own task, and no other one."""
+"""A child that is killed, stopped, canceled or late fails its own task, and no other one."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from app.services.children.pool import ChildPool, TaskTimedOut
 from tests.live import wait_until
 
 NET_S = 60.0
-"""No test should come near it."""
+"""Time limit of every wait: much more than any test needs."""
 
 
 def _nothing() -> None:
-    """What children prepare with here."""
+    """The preparation of the children: they need none."""
 
 
 @pytest.fixture
@@ -58,7 +58,7 @@ def _large(path: str, size: int) -> bytes:
 
 
 def _between(first: str, second: str) -> bool:
-    """Whether another task is seen to run while this one does."""
+    """Whether another task runs during this one. Each task creates a file when it runs."""
     Path(first).touch()
     end = time.monotonic() + 1.0
     while time.monotonic() < end:
@@ -80,7 +80,7 @@ def _server() -> psutil.Process:
     )
 
 
-def test_results_and_failures_come_back(pool: ChildPool) -> None:
+def test_the_future_gets_the_result_or_the_failure(pool: ChildPool) -> None:
     assert pool.submit(sum, [1, 2]).result(NET_S) == 3
     with pytest.raises(ZeroDivisionError) as failure:
         pool.submit(divmod, 1, 0).result(NET_S)
@@ -100,7 +100,7 @@ def test_results_and_failures_come_back(pool: ChildPool) -> None:
         (_leave, 3, False),
     ],
 )
-def test_a_death_tells_whose_it_was(
+def test_the_end_of_a_child_says_whether_its_task_was_the_cause(
     pool: ChildPool, work: Callable[[int], None], argument: int, is_from_outside: bool
 ) -> None:
     with pytest.raises(ChildEnded) as end:
@@ -109,13 +109,13 @@ def test_a_death_tells_whose_it_was(
     assert pool.submit(sum, [1]).result(NET_S) == 1
 
 
-def test_a_kill_while_memory_is_short_is_the_tasks_own() -> None:
+def test_if_memory_is_short_a_kill_counts_as_caused_by_the_task() -> None:
     assert ChildEnded(-signal.SIGKILL).is_from_outside
     assert not ChildEnded(-signal.SIGKILL, memory_was_short=True).is_from_outside
 
 
 @pytest.mark.parametrize("jump", [3600.0, -3600.0])
-def test_a_jump_of_the_clock_times_nothing_out(
+def test_a_jump_of_the_wall_clock_does_not_end_a_task(
     pool: ChildPool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, jump: float
 ) -> None:
     task = pool.submit(_pid_then, str(tmp_path / "a"), 1.0, seconds=NET_S)
@@ -125,7 +125,7 @@ def test_a_jump_of_the_clock_times_nothing_out(
     assert task.result(NET_S) == "done"
 
 
-def test_a_late_task_and_a_stopped_child_are_ended(pool: ChildPool, tmp_path: Path) -> None:
+def test_a_late_task_and_a_stopped_child_are_killed(pool: ChildPool, tmp_path: Path) -> None:
     late = pool.submit(_pid_then, str(tmp_path / "late"), NET_S, seconds=2.0)
     with pytest.raises(TaskTimedOut):
         late.result(NET_S)
@@ -137,25 +137,25 @@ def test_a_late_task_and_a_stopped_child_are_ended(pool: ChildPool, tmp_path: Pa
         assert not psutil.pid_exists(_pid_in(tmp_path / name))
 
 
-def test_cancelling_kills_the_child_and_frees_its_place(tmp_path: Path) -> None:
-    narrow = ChildPool(1, _nothing)
-    running = narrow.submit(_pid_then, str(tmp_path / "a"), NET_S)
+def test_canceling_kills_the_child_and_the_next_task_runs(tmp_path: Path) -> None:
+    single = ChildPool(1, _nothing)
+    running = single.submit(_pid_then, str(tmp_path / "a"), NET_S)
     pid = _pid_in(tmp_path / "a")
     assert running.cancel()
     assert wait([running], NET_S).done
     with pytest.raises(CancelledError):
         running.result()
-    assert narrow.submit(sum, [1]).result(NET_S) == 1
+    assert single.submit(sum, [1]).result(NET_S) == 1
     assert not psutil.pid_exists(pid)
-    narrow.close()
+    single.close()
 
 
-def test_a_killed_server_ends_no_task_and_is_replaced(pool: ChildPool, tmp_path: Path) -> None:
+def test_a_killed_server_is_replaced_and_its_tasks_go_on(pool: ChildPool, tmp_path: Path) -> None:
     running = pool.submit(_pid_then, str(tmp_path / "a"), 2.0)
     child = _pid_in(tmp_path / "a")
     server = _server()
     server.kill()
-    # The other place needs a new child, and so a new server.
+    # The second task needs a second child, and therefore a new server.
     assert pool.submit(sum, [1]).result(NET_S) == 1
     assert _server().pid != server.pid
     assert running.result(NET_S) == "done"
@@ -168,7 +168,7 @@ def test_a_killed_server_ends_no_task_and_is_replaced(pool: ChildPool, tmp_path:
     wait_until(lambda: not any(psutil.pid_exists(pid) for pid in pids), NET_S)
 
 
-def test_servers_that_are_killed_again_and_again(pool: ChildPool) -> None:
+def test_tasks_run_after_the_server_was_killed_several_times(pool: ChildPool) -> None:
     for number in range(2):
         assert pool.submit(sum, [number]).result(NET_S) == number
         for child in _server().children():
@@ -178,7 +178,7 @@ def test_servers_that_are_killed_again_and_again(pool: ChildPool) -> None:
 
 
 @pytest.mark.parametrize("after", [0.0, 0.02, 0.1])
-def test_a_child_killed_while_it_sends_its_result_stops_nobody(
+def test_a_child_killed_while_it_sends_its_result_does_not_stop_others(
     pool: ChildPool, tmp_path: Path, after: float
 ) -> None:
     sending: Future[Any] = pool.submit(_large, str(tmp_path / "a"), 200 * 2**20)
@@ -191,7 +191,9 @@ def test_a_child_killed_while_it_sends_its_result_stops_nobody(
     assert failure is None or isinstance(failure, ChildEnded)
 
 
-def test_a_task_that_wants_to_be_alone_is(pool: ChildPool, tmp_path: Path) -> None:
+def test_no_other_task_runs_during_a_task_that_must_be_alone(
+    pool: ChildPool, tmp_path: Path
+) -> None:
     before, alone, after = (str(tmp_path / name) for name in ("before", "alone", "after"))
     first = pool.submit(_between, before, alone)
     quiet = pool.submit(_between, alone, after, is_alone=True)
@@ -202,11 +204,11 @@ def test_a_task_that_wants_to_be_alone_is(pool: ChildPool, tmp_path: Path) -> No
 
 
 def test_a_closed_pool_leaves_no_child_and_no_waiting_task(tmp_path: Path) -> None:
-    narrow = ChildPool(1, _nothing)
-    running = narrow.submit(_pid_then, str(tmp_path / "a"), NET_S)
-    waiting = narrow.submit(sum, [1])
+    single = ChildPool(1, _nothing)
+    running = single.submit(_pid_then, str(tmp_path / "a"), NET_S)
+    waiting = single.submit(sum, [1])
     pid = _pid_in(tmp_path / "a")
-    threading.Thread(target=narrow.close).start()
+    threading.Thread(target=single.close).start()
     with pytest.raises(ChildEnded):
         running.result(NET_S)
     assert waiting.cancelled()

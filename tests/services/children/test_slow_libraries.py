@@ -1,4 +1,4 @@
-"""hmmlearn and scikit-learn are loaded by those who fit with them, and by nobody else."""
+"""Only processes that fit models load hmmlearn and scikit-learn, which are slow to import."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from app.services.children.processes import LIBRARIES, child_context
 SLOW = ("hmmlearn", "sklearn")
 
 
-def test_commands_the_api_and_the_worker_start_without_them() -> None:
+def test_the_commands_the_api_and_the_worker_start_without_slow_libraries() -> None:
     code = (
         "import sys, app.cli, app.api.app, app.worker.__main__;"
         f"print(*(name for name in {SLOW} if name in sys.modules))"
@@ -25,14 +25,14 @@ def test_commands_the_api_and_the_worker_start_without_them() -> None:
 
 @pytest.mark.parametrize("name", LIBRARIES)
 def test_each_library_of_the_children_exists(name: str) -> None:
-    """The server process says nothing of one that does not: it would just be slow."""
+    """The server process ignores a missing library without an error, and children become slow."""
     importlib.import_module(name)
 
 
-def test_the_children_find_them_loaded() -> None:
+def test_children_start_with_the_slow_libraries_loaded() -> None:
     context = child_context()
     answers = context.Queue()
-    child = context.Process(target=_tell, args=(answers,))
+    child = context.Process(target=_report_loaded, args=(answers,))
     child.start()
     try:
         assert answers.get(timeout=60) == dict.fromkeys(SLOW, True)
@@ -40,5 +40,5 @@ def test_the_children_find_them_loaded() -> None:
         child.join()
 
 
-def _tell(answers: Queue[dict[str, bool]]) -> None:
+def _report_loaded(answers: Queue[dict[str, bool]]) -> None:
     answers.put({name: name in sys.modules for name in SLOW})

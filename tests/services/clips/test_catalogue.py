@@ -1,4 +1,4 @@
-"""Clips: taken in once, analysed again when asked, changed, removed."""
+"""Clips: added once, analyzed again on request, changed, removed."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ NOT_HUMAN = (
 )
 
 
-def test_the_same_bytes_again_give_the_clip_that_exists(
+def test_the_same_bytes_again_give_the_existing_clip(
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:
     first = upload(lib, some_demo_clips[0], words=("Walk", "left-leg", "walk"))
@@ -62,7 +62,7 @@ def test_bad_content_fails_at_once_for_its_own_reason_and_can_be_sent_again(lib:
     ("content", "failure"),
     [(b"", EmptyFile), (b"hello there", UnknownFormat), (b"HIERARCHY" + bytes(99), TooLarge)],
 )
-def test_what_no_reader_takes_is_refused_and_nothing_is_kept(
+def test_content_that_no_reader_knows_is_refused_and_not_stored(
     tmp_path: Any, content: bytes, failure: type[Exception]
 ) -> None:
     lib = Library.open(settings_for(tmp_path, max_upload_bytes=50))
@@ -94,7 +94,7 @@ def test_a_wrong_field_is_named(lib: Library, said: dict[str, Any], location: st
     assert [place.location for place in refused.value.places] == [location]
 
 
-def test_a_file_name_keeps_nothing_of_a_path(lib: Library) -> None:
+def test_a_file_name_has_no_folder(lib: Library) -> None:
     given = "..\\..//etc/pass\nwd.bvh"
     clip = clips.create_clip(lib, io.BytesIO(b"HIERARCHY\n"), given).clip
     assert (clip.file_name, clip.name) == ("passwd.bvh", "passwd")
@@ -106,7 +106,7 @@ def test_a_file_without_a_name_is_called_clip(lib: Library, name: str) -> None:
     assert (clip.file_name, clip.name) == ("clip", "clip")
 
 
-def test_another_frame_rate_has_the_clip_analyzed_again_under_its_id(
+def test_after_a_change_of_the_frame_rate_the_clip_is_analyzed_again(
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:
     clip = upload(lib, some_demo_clips[0]).clip
@@ -153,7 +153,7 @@ def test_labels_change_without_another_analysis(
         clips.update_clip(lib, "clip_none", {"name": "x"})
 
 
-def test_a_removed_clip_is_gone_with_its_file_from_every_search(
+def test_a_removed_clip_is_in_no_search_and_its_file_is_removed(
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:
     one, other = (upload(lib, clip).clip for clip in some_demo_clips[:2])

@@ -1,4 +1,4 @@
-"""A person who is forgotten is in no label, no model and no byte; a setting keeps all out."""
+"""A forgotten person is in no label, no model and no file; a setting switches recognition off."""
 
 from __future__ import annotations
 
@@ -42,7 +42,9 @@ def _bytes_of(folder: Path) -> bytes:
     return b"".join(path.read_bytes() for path in folder.glob("*.sqlite3*"))
 
 
-def test_a_person_is_forgotten_wholly(lib: Library, some_demo_clips: list[DemoClip]) -> None:
+def test_a_forgotten_person_is_in_no_label_model_or_file(
+    lib: Library, some_demo_clips: list[DemoClip]
+) -> None:
     ids = _library(lib, some_demo_clips)
     theirs = ids[f"{NAME} wave"]
     before = recognize.recognize(lib, RecognizeQuery(QuerySource(theirs)))
@@ -55,11 +57,11 @@ def test_a_person_is_forgotten_wholly(lib: Library, some_demo_clips: list[DemoCl
     found = clips.get_clip(lib, theirs)
     assert (found.person, found.state) == (None, ClipState.READY)
     with pytest.raises(
-        ModelBeingFitted, match="removed: a person whom it held was removed"
+        ModelBeingFitted, match="removed: it held a person who was removed"
     ) as refused:
         recognize.recognize(lib, RecognizeQuery(QuerySource(theirs)))
     (waiting,) = jobs.list_jobs(lib, kind=JobKind.FIT, state=JobState.QUEUED).items
-    assert f"ask again when the job {waiting.id} has ended" in refused.value.detail
+    assert f"try again when the job {waiting.id} has ended" in refused.value.detail
     assert NAME not in refused.value.detail
     lib.store.erase_traces()
     assert NAME.encode() not in _bytes_of(lib.settings.data_dir)
@@ -79,38 +81,40 @@ def test_a_person_whose_clips_are_deleted_can_be_forgotten(
     for label, clip_id in ids.items():
         if label.startswith(NAME):
             clips.delete_clip(lib, clip_id)
-    asked = RecognizeQuery(QuerySource(ids["bruno bow"]))
-    held = recognize.recognize(lib, asked)
+    query = RecognizeQuery(QuerySource(ids["bruno bow"]))
+    held = recognize.recognize(lib, query)
     assert NAME in {candidate.label for candidate in held.person.candidates}
 
     persons.forget_person(lib, NAME)
     with pytest.raises(ModelBeingFitted):
-        recognize.recognize(lib, asked)
+        recognize.recognize(lib, query)
     lib.store.erase_traces()
     assert NAME.encode() not in _bytes_of(lib.settings.data_dir)
     with pytest.raises(NotFound):
         persons.forget_person(lib, NAME)
 
 
-def test_why_a_model_is_not_there_is_told(lib: Library, some_demo_clips: list[DemoClip]) -> None:
+def test_the_error_for_a_missing_model_gives_the_reason(
+    lib: Library, some_demo_clips: list[DemoClip]
+) -> None:
     one = [clip for clip in some_demo_clips if clip.person == "ada"]
     ids = [upload(lib, clip, person=NAME, task="all the same").clip.id for clip in one]
     models.request_fit(lib)
     work(lib.settings)
-    asked = MotionQuery(QuerySource(ids[0]), method="metric-person")
+    query = MotionQuery(QuerySource(ids[0]), method="metric-person")
     with pytest.raises(ModelNotFitted, match="two clips each"):
-        find_motion(lib, asked)
+        find_motion(lib, query)
     models.request_fit(lib)
-    with pytest.raises(ModelBeingFitted, match=r"yet\. The models are being fitted: ask"):
-        find_motion(lib, asked)
+    with pytest.raises(ModelBeingFitted, match=r"yet\. The models are being fitted: try"):
+        find_motion(lib, query)
     persons.forget_person(lib, NAME)
     work(lib.settings)
     with pytest.raises(ModelNotFitted) as refused:
-        find_motion(lib, asked)
+        find_motion(lib, query)
     assert not isinstance(refused.value, ModelBeingFitted)
 
 
-def test_a_fit_that_began_before_brings_nobody_back(
+def test_a_fit_that_began_before_does_not_bring_the_person_back(
     lib: Library, some_demo_clips: list[DemoClip], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     _library(lib, some_demo_clips)
@@ -130,7 +134,7 @@ def test_a_fit_that_began_before_brings_nobody_back(
     assert {record.kind for record in models.list_models(lib)} == {"words", "metric-task"}
 
 
-def test_switched_off_no_model_holds_a_person(
+def test_no_model_holds_persons_if_recognizing_persons_is_switched_off(
     tmp_path: Path, some_demo_clips: list[DemoClip]
 ) -> None:
     with_persons = Library.open(settings_for(tmp_path))

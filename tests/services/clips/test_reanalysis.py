@@ -1,4 +1,4 @@
-"""Clips of an earlier analysis are analysed again, by the worker that starts or when asked."""
+"""Clips of an earlier analysis are analyzed again at the start of a worker or on request."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def _make_ready(lib: Library, demo: list[DemoClip]) -> list[str]:
     return ids
 
 
-def test_a_worker_that_starts_brings_old_clips_up_to_date(
+def test_a_worker_analyzes_outdated_clips_when_it_starts(
     lib: Library, some_demo_clips: list[DemoClip], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with monkeypatch.context() as old:
@@ -53,7 +53,7 @@ def test_a_worker_that_starts_brings_old_clips_up_to_date(
     assert [hit.clip.id for hit in hits.items] == [second]
 
 
-def test_searches_go_on_while_clips_wait_for_another_analysis(
+def test_searches_find_clips_that_wait_for_another_analysis(
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:
     first, second = _make_ready(lib, some_demo_clips[:2])
@@ -64,12 +64,12 @@ def test_searches_go_on_while_clips_wait_for_another_analysis(
 
 
 def _remove_file(lib: Library, clip_id: str) -> Path:
-    """Lose a clip's file; returns where it is kept meanwhile."""
+    """Move a clip's file away; returns its new path."""
     place = clips.open_file(lib, clip_id).path
     return place.rename(place.with_suffix(".lost"))
 
 
-def test_a_ready_clip_whose_file_is_missing_keeps_its_analysis_and_says_so(
+def test_a_ready_clip_whose_file_is_missing_keeps_its_analysis_with_a_warning(
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:
     first, second = _make_ready(lib, some_demo_clips[:2])
@@ -80,9 +80,9 @@ def test_a_ready_clip_whose_file_is_missing_keeps_its_analysis_and_says_so(
     kept = clips.get_clip(lib, first)
     assert (kept.state, kept.reanalysis) == (ClipState.READY, Reanalysis.FAILED)
     assert (kept.frame_rate, kept.error) == (before.frame_rate, None)
-    (told,) = [w.detail for w in kept.warnings if w.code == "file_missing"]
-    assert kept.sha256 in told
-    assert "kinedex reanalyze" in told
+    (warning,) = [w.detail for w in kept.warnings if w.code == "file_missing"]
+    assert kept.sha256 in warning
+    assert "kinedex reanalyze" in warning
     assert [hit.clip.id for hit in find_motion(lib, MotionQuery(QuerySource(second))).items] == [
         first
     ]
@@ -94,7 +94,7 @@ def test_a_ready_clip_whose_file_is_missing_keeps_its_analysis_and_says_so(
     assert "file_missing" not in {warning.code for warning in healed.warnings}
 
 
-def test_a_clip_that_never_was_ready_fails_where_its_file_is_missing(
+def test_a_clip_that_never_was_ready_fails_if_its_file_is_missing(
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:
     clip = upload(lib, some_demo_clips[0]).clip
@@ -110,7 +110,7 @@ def test_a_clip_that_never_was_ready_fails_where_its_file_is_missing(
 METHODS = ("fused", "vector", "dtw", "msv-dtw", "msv-xcorr", "metric-task", "metric-person")
 
 
-def test_during_an_upgrade_that_changes_shapes_searches_go_on_without_the_old_clips(
+def test_during_an_upgrade_that_changes_shapes_searches_leave_old_clips_out(
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:
     ids = _make_ready(lib, some_demo_clips)
@@ -158,12 +158,12 @@ def test_a_model_fitted_on_arrays_of_other_shapes_is_not_used(
         FittedModels().words(lib.store)
 
 
-def test_what_is_up_to_date_is_left_alone(lib: Library, some_demo_clips: list[DemoClip]) -> None:
+def test_up_to_date_clips_are_not_queued(lib: Library, some_demo_clips: list[DemoClip]) -> None:
     _make_ready(lib, some_demo_clips[:2])
     assert reanalysis.requeue_outdated(lib) == 0
 
 
-def test_all_ready_clips_when_asked(lib: Library, some_demo_clips: list[DemoClip]) -> None:
+def test_all_ready_clips_can_be_queued(lib: Library, some_demo_clips: list[DemoClip]) -> None:
     (only,) = _make_ready(lib, some_demo_clips[:1])
     assert reanalysis.requeue_ready(lib) == 1
     waiting = clips.get_clip(lib, only)

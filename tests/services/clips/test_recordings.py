@@ -1,4 +1,4 @@
-"""Recordings of clips: kept, heard, replaced, removed; what is told goes before what is heard."""
+"""Recordings of clips: stored, analyzed, replaced, removed. Beats of a client go first."""
 
 from __future__ import annotations
 
@@ -70,19 +70,17 @@ def test_the_beats_of_a_recording_become_those_of_the_motion(
 
 
 @pytest.mark.parametrize("format", ["WAV", "MP3"])
-def test_a_recording_that_was_cut_off_is_said_to_be(
-    lib: Library, danced: DemoClip, format: str
-) -> None:
+def test_a_truncated_recording_gives_a_warning(lib: Library, danced: DemoClip, format: str) -> None:
     whole = as_format(danced.audio, format)
     clip = ready(lib, send(lib, danced, whole[:2000], audio_offset=-1.3))
-    told = {warning.code: warning.detail for warning in clip.warnings}
-    assert list(told) == ["audio_truncated", "audio_without_beats"]
-    assert "is cut off: its header promises" in told["audio_truncated"]
+    warnings = {warning.code: warning.detail for warning in clip.warnings}
+    assert list(warnings) == ["audio_truncated", "audio_without_beats"]
+    assert "is cut off: its header promises" in warnings["audio_truncated"]
     if format == "WAV":
-        assert f"promises {len(whole)} bytes, 2000 are there" in told["audio_truncated"]
+        assert f"promises {len(whole)} bytes, 2000 are there" in warnings["audio_truncated"]
 
 
-def test_a_decoder_writes_nothing_into_our_log(
+def test_a_decoder_writes_nothing_to_the_log(
     lib: Library, danced: DemoClip, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     song = tmp_path / "song.mp3"
@@ -93,9 +91,7 @@ def test_a_decoder_writes_nothing_into_our_log(
     assert capfd.readouterr() == ("", "")
 
 
-def test_an_offset_that_nobody_tells_is_estimated_and_said_to_be(
-    lib: Library, danced: DemoClip
-) -> None:
+def test_a_missing_offset_is_estimated_with_a_warning(lib: Library, danced: DemoClip) -> None:
     clip = ready(lib, send(lib, danced, danced.audio))
     beats, found = np.array(danced.beats), keyposes.view(lib, clip.id).found.beats
     assert found.source == "audio"
@@ -107,7 +103,7 @@ def test_an_offset_that_nobody_tells_is_estimated_and_said_to_be(
     assert abs(off - round(off)) < 0.15  # right, but for whole beats
 
 
-def test_what_is_told_goes_before_what_is_heard(lib: Library, danced: DemoClip) -> None:
+def test_the_clients_beats_replace_those_of_the_recording(lib: Library, danced: DemoClip) -> None:
     sent = send(lib, danced, danced.audio, tempo="50", beats=[3.0, 1.0, 2.0], audio_offset=-1.3)
     clip = ready(lib, sent)
     found = keyposes.view(lib, clip.id).found.beats
@@ -124,7 +120,9 @@ def test_what_is_told_goes_before_what_is_heard(lib: Library, danced: DemoClip) 
     assert clip.audio_offset is None
 
 
-def test_the_same_motion_with_another_recording_takes_it(lib: Library, danced: DemoClip) -> None:
+def test_the_same_motion_with_another_recording_gets_the_new_recording(
+    lib: Library, danced: DemoClip
+) -> None:
     first = send(lib, danced, None)
     ready(lib, first)
     with_sound = send(lib, danced, danced.audio, audio_offset=-1.3, person="not taken")
@@ -141,7 +139,9 @@ def test_the_same_motion_with_another_recording_takes_it(lib: Library, danced: D
     assert not old.exists()
 
 
-def test_a_recording_goes_with_the_last_clip_that_has_it(lib: Library, danced: DemoClip) -> None:
+def test_a_recording_is_removed_with_the_last_clip_that_has_it(
+    lib: Library, danced: DemoClip
+) -> None:
     another = dance(22, seconds=8.0)
     one, two = send(lib, danced, danced.audio), send(lib, another, danced.audio)
     path = clips.open_recording(lib, one.clip.id).path
@@ -152,7 +152,7 @@ def test_a_recording_goes_with_the_last_clip_that_has_it(lib: Library, danced: D
     assert not path.exists()
 
 
-def test_what_is_no_recording_is_refused_at_once(lib: Library, danced: DemoClip) -> None:
+def test_a_file_that_is_no_recording_is_refused_at_upload(lib: Library, danced: DemoClip) -> None:
     for bad in (b"", b"HIERARCHY", danced.content):
         with pytest.raises(BadField) as refused:
             send(lib, danced, bad)
@@ -167,7 +167,7 @@ def test_what_is_no_recording_is_refused_at_once(lib: Library, danced: DemoClip)
         (as_format(dance(22, seconds=4.0, sound=Sound.CLICKS).audio, "WAV")[:60], None),
     ],
 )
-def test_a_recording_that_cannot_be_used_stops_no_clip(
+def test_a_clip_with_an_unusable_recording_becomes_ready(
     lib: Library, danced: DemoClip, audio: bytes, code: str | None
 ) -> None:
     clip = ready(lib, send(lib, danced, audio))
@@ -186,7 +186,7 @@ def test_bad_fields_are_named(lib: Library, danced: DemoClip, field: str, value:
     assert refused.value.places[0].location == field
 
 
-def test_a_clip_without_a_recording_says_so(lib: Library, danced: DemoClip) -> None:
+def test_a_clip_without_a_recording_gives_a_clear_error(lib: Library, danced: DemoClip) -> None:
     clip_id = send(lib, danced, None).clip.id
     for ask in (clips.open_recording, clips.remove_recording):
         with pytest.raises(NotFound, match="no recording"):

@@ -63,7 +63,7 @@ def paired(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Library]:
     lib.close()
 
 
-def test_a_pair_becomes_a_clip_and_says_what_was_assumed(paired: Library) -> None:
+def test_an_amc_with_its_asf_becomes_a_clip_with_warnings_for_assumptions(paired: Library) -> None:
     clip = by_name(paired)["07_01"]
     assert (clip.state, clip.format, clip.frames) == (ClipState.READY, "amc", 80)
     assert (clip.frame_rate, clip.declared_frame_rate) == (120, None)
@@ -78,7 +78,7 @@ def test_a_c3d_file_becomes_a_clip(paired: Library) -> None:
     assert (clip.frame_rate, clip.metres_per_unit, clip.missing_roles) == (100, 0.001, ())
 
 
-def test_each_half_alone_fails_clearly(paired: Library) -> None:
+def test_an_amc_or_an_asf_alone_fails_with_a_clear_reason(paired: Library) -> None:
     for name, code in (("lonely", "skeleton_needed"), ("07", "motion_needed")):
         clip = by_name(paired)[name]
         assert clip.state is ClipState.FAILED
@@ -92,7 +92,7 @@ def test_the_same_pair_again_is_the_same_clip(paired: Library) -> None:
     assert again.clip.id == by_name(paired)["07_01"].id
 
 
-def test_an_uploaded_pair_finds_itself(paired: Library) -> None:
+def test_a_search_by_an_uploaded_pair_finds_the_stored_one(paired: Library) -> None:
     query = MotionQuery(QuerySource(content=io.BytesIO(AMC), skeleton=io.BytesIO(ASF)))
     best = find.find_motion(paired, query).items[0]
     assert best.clip.name == "07_01"
@@ -124,7 +124,7 @@ def test_an_upload_that_is_no_pair_is_refused_by_searches(
 @pytest.mark.parametrize(
     ("content", "skeleton"), [(bvh(), ASF), (AMC, bvh()), (AMC, b""), (AMC, b"hello"), (ASF, AMC)]
 )
-def test_a_skeleton_that_cannot_be_is_refused_and_nothing_kept(
+def test_a_wrong_skeleton_is_refused_and_nothing_is_stored(
     lib: Library, content: bytes, skeleton: bytes
 ) -> None:
     with pytest.raises(BadField) as caught:
@@ -162,7 +162,7 @@ def check_imported(lib: Library, result: dict[str, Any] | None) -> None:
     assert found["07_02"].frame_rate == 120
 
 
-def test_a_zip_with_pairs(lib: Library) -> None:
+def test_a_zip_with_pairs_is_imported(lib: Library) -> None:
     archive = io.BytesIO()
     with zipfile.ZipFile(archive, "w") as opened:
         for path, content in FOLDER.items():
@@ -173,7 +173,9 @@ def test_a_zip_with_pairs(lib: Library) -> None:
     check_imported(lib, jobs.get_job(lib, job.id).result)
 
 
-def test_a_folder_with_pairs_and_one_file_of_it(lib: Library, tmp_path: Path) -> None:
+def test_a_folder_with_pairs_and_a_single_amc_file_are_imported(
+    lib: Library, tmp_path: Path
+) -> None:
     for path, content in FOLDER.items():
         (tmp_path / "in" / path).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "in" / path).write_bytes(content)
@@ -188,7 +190,7 @@ def test_a_folder_with_pairs_and_one_file_of_it(lib: Library, tmp_path: Path) ->
     ]
 
 
-def test_a_motion_whose_skeleton_is_not_there_is_told(lib: Library, tmp_path: Path) -> None:
+def test_an_amc_without_its_skeleton_fails_with_a_reason(lib: Library, tmp_path: Path) -> None:
     (tmp_path / "07_01.amc").write_bytes(AMC)
     job = imports.import_path(lib, tmp_path / "07_01.amc")
     work(lib.settings)

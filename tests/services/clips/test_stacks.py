@@ -1,4 +1,4 @@
-"""The animation stack of an FBX file: picked at upload, afterwards, and for a query."""
+"""The animation stack of an FBX file: chosen at upload, later, and for a query."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def lib(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Library]:
 
 
 def upload(lib: Library, stack: str | None, extra: bytes = b"") -> ClipRecord:
-    """`extra` bytes at the end, which no reader asks for, make it a clip of its own."""
+    """The FBX file; `extra` bytes at its end, which readers ignore, make it a different clip."""
     said = {"stack": stack}
     return clips.create_clip(lib, io.BytesIO(TAKES + extra), "takes.fbx", said).clip
 
@@ -42,14 +42,14 @@ def worked(lib: Library, clip_id: str) -> ClipRecord:
     return clips.get_clip(lib, clip_id)
 
 
-def test_the_longest_is_read_and_the_others_are_told(lib: Library) -> None:
+def test_the_longest_stack_is_read_and_a_warning_names_the_others(lib: Library) -> None:
     clip = worked(lib, upload(lib, None).id)
     assert (clip.state, clip.frames) == (ClipState.READY, 61)
-    (told,) = [w.detail for w in clip.warnings if w.code == "stack_chosen"]
-    assert "(bow, sway); sway was read" in told
+    (warning,) = [w.detail for w in clip.warnings if w.code == "stack_chosen"]
+    assert "(bow, sway); sway was read" in warning
 
 
-def test_another_is_picked_afterwards_and_null_returns(lib: Library) -> None:
+def test_another_stack_can_be_chosen_later_and_null_resets_it(lib: Library) -> None:
     clip = worked(lib, upload(lib, "bow", b"1").id)
     assert (clip.state, clip.frames) == (ClipState.READY, 31)
     assert clips.update_clip(lib, clip.id, {"stack": " bow "}).state is ClipState.READY
@@ -62,7 +62,7 @@ def test_another_is_picked_afterwards_and_null_returns(lib: Library) -> None:
     assert b"Frames: 31" in b"".join(file.blocks)
 
 
-def test_an_unknown_one_fails_with_the_list_and_can_be_mended(lib: Library) -> None:
+def test_an_unknown_stack_fails_with_a_list_and_can_be_corrected(lib: Library) -> None:
     failed = worked(lib, upload(lib, "run", b"2").id)
     assert failed.state is ClipState.FAILED
     assert failed.error is not None
@@ -73,7 +73,7 @@ def test_an_unknown_one_fails_with_the_list_and_can_be_mended(lib: Library) -> N
     assert worked(lib, failed.id).frames == 31
 
 
-def test_other_formats_have_none(lib: Library) -> None:
+def test_other_formats_have_no_stacks(lib: Library) -> None:
     content = bvh()
     with pytest.raises(BadField, match="not with BVH"):
         clips.create_clip(lib, io.BytesIO(content), "a.bvh", {"stack": "bow"})

@@ -1,4 +1,4 @@
-"""Pictures that move: well-formed, free of scripts, and where the joints are at each time."""
+"""Animated pictures: well-formed, without scripts, with the right positions of joints over time."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ def _parsed(*bodies: FloatArray, rate: float = 30.0, title: str = "a clip") -> E
 
 
 def _points(element: ElementTree.Element, color: str) -> list[FloatArray]:
-    """(frames, joints, 2) of each line of a color; one frame where nothing moves."""
+    """(frames, joints, 2) of each line of a color; one frame if nothing moves."""
     found = []
     for line in element.iter(f"{SVG}polyline"):
         moves = line.find(f"{SVG}animate")
-        told = line.get("points", "") if moves is None else moves.get("values", "")
+        values = line.get("points", "") if moves is None else moves.get("values", "")
         if line.get("stroke") == color:
-            frames = [[xy.split(",") for xy in frame.split()] for frame in told.split(";")]
+            frames = [[xy.split(",") for xy in frame.split()] for frame in values.split(";")]
             found.append(np.array(frames, dtype=float))
     return found
 
@@ -43,7 +43,7 @@ def _arm(element: ElementTree.Element, color: str) -> FloatArray:
     return next(line for line in _points(element, color) if line.shape[1] == 4)
 
 
-def test_it_holds_nothing_active_but_time() -> None:
+def test_a_picture_has_no_active_content_except_animations() -> None:
     drawn = _parsed(walking(), title="<script>&\x00\u202e")
     tags = {element.tag.removeprefix(SVG) for element in drawn.iter()}
     assert tags <= HARMLESS
@@ -56,16 +56,19 @@ def test_it_holds_nothing_active_but_time() -> None:
     assert title.text == "<script>&"
 
 
-def test_every_animation_has_the_same_time_and_as_many_values() -> None:
+def test_all_animations_have_the_same_duration_and_number_of_values() -> None:
     drawn = _parsed(walking(4.0), waving(4.0))
-    told = [e for e in drawn.iter() if e.tag.removeprefix(SVG).startswith("animate")]
-    assert {e.get("dur") for e in told} == {"4.000s"}
-    assert {e.get("repeatCount") for e in told} == {"indefinite"}
-    assert {len(e.get("values", "").split(";")) for e in told} == {61, 2}  # 15 Hz, and the bar
+    animations = [e for e in drawn.iter() if e.tag.removeprefix(SVG).startswith("animate")]
+    assert {e.get("dur") for e in animations} == {"4.000s"}
+    assert {e.get("repeatCount") for e in animations} == {"indefinite"}
+    assert {len(e.get("values", "").split(";")) for e in animations} == {
+        61,
+        2,
+    }  # 15 Hz, and the bar
 
 
 @pytest.mark.parametrize("body", [waving(), walking(1.5), walking(20.0, turn=0.2)])
-def test_everyone_stays_within_the_picture(body: FloatArray) -> None:
+def test_all_bodies_stay_within_the_picture(body: FloatArray) -> None:
     drawn = _parsed(body)
     for points in _points(drawn, LEFT) + _points(drawn, RIGHT):
         assert points.min() >= 0
@@ -73,7 +76,7 @@ def test_everyone_stays_within_the_picture(body: FloatArray) -> None:
         assert points[..., 1].max() <= HEIGHT
 
 
-def test_joints_are_where_the_body_has_them_seen_from_the_side() -> None:
+def test_joints_have_the_positions_of_the_body_seen_from_the_side() -> None:
     body = waving()  # the hand moves along x, which becomes the picture's
     names = [role.value for role in SUN_ROLES]
     drawn = _arm(_parsed(body), RIGHT)
@@ -85,7 +88,7 @@ def test_joints_are_where_the_body_has_them_seen_from_the_side() -> None:
     assert np.abs(drawn - expected).max() < 2.0
 
 
-def test_the_camera_follows_who_goes_far_and_the_floor_passes_by() -> None:
+def test_the_camera_follows_a_body_that_goes_far_and_the_floor_moves() -> None:
     near, far = _parsed(walking(1.0)), _parsed(walking(20.0))
     assert near.find(f".//{SVG}animateTransform") is None
     moved = far.find(f".//{SVG}animateTransform")
@@ -95,7 +98,7 @@ def test_the_camera_follows_who_goes_far_and_the_floor_passes_by() -> None:
     assert (np.diff(shifts) < 0.2).all()
 
 
-def test_a_person_of_two_motions_is_drawn_in_one_scale() -> None:
+def test_two_motions_of_one_person_have_one_scale() -> None:
     both = _parsed(waving(), 0.5 * waving())
     left = [svg for svg in both.iter(f"{SVG}svg") if svg.get("x") is not None]
     assert [svg.get("x") for svg in left] == ["0", str(WIDTH)]
@@ -103,26 +106,26 @@ def test_a_person_of_two_motions_is_drawn_in_one_scale() -> None:
     assert large == pytest.approx(2 * small, abs=0.3)
 
 
-def test_labels_stand_above_and_are_text() -> None:
+def test_labels_are_above_the_figures_and_escaped() -> None:
     figures = [role_figure(waving(), "A <b>"), role_figure(waving(), "original")]
     drawn = ElementTree.fromstring(animated_svg(figures, 30.0, "pair"))
     assert [text.text for text in drawn.iter(f"{SVG}text")] == ["A <b>", "original"]
 
 
-def test_long_motions_keep_their_time_with_fewer_frames() -> None:
+def test_long_motions_keep_their_duration_with_fewer_frames() -> None:
     body = np.tile(waving(4.0)[:-1], (50, 1, 1))
     picture = animated_svg([role_figure(body)], 30.0, "long")
     values = re.findall(
         r'<animate attributeName="cx" dur="([\d.]+)s"[^>]* values="([^"]*)"', picture
     )
-    (told,) = re.findall(r'attributeName="width" dur="([\d.]+)s"', picture)
-    assert float(told) == pytest.approx(200, abs=0.5)
+    (seconds,) = re.findall(r'attributeName="width" dur="([\d.]+)s"', picture)
+    assert float(seconds) == pytest.approx(200, abs=0.5)
     assert all(len(moves.split(";")) <= MAX_FRAMES for _, moves in values)
     assert len(picture) < 400_000
 
 
 @pytest.mark.parametrize("body", [standing(1), standing(40), np.zeros((5, 13, 3))])
-def test_what_does_not_move_is_drawn_still(body: FloatArray) -> None:
+def test_a_body_that_does_not_move_has_no_animation(body: FloatArray) -> None:
     drawn = _parsed(body)
     assert [e.get("attributeName") for e in drawn.iter(f"{SVG}animate")] in ([], ["width"])
     assert len(list(drawn.iter(f"{SVG}polyline"))) == 6
@@ -145,6 +148,6 @@ def test_every_bone_is_in_one_line() -> None:
 
 
 @pytest.mark.parametrize("figures", [[], [role_figure(np.zeros((0, 13, 3)))]])
-def test_nothing_cannot_be_drawn(figures: list[Figure]) -> None:
-    with pytest.raises(ValueError, match="without a frame"):
+def test_figures_without_frames_are_refused(figures: list[Figure]) -> None:
+    with pytest.raises(ValueError, match="at least one figure"):
         animated_svg(figures, 30.0, "nothing")

@@ -1,4 +1,4 @@
-"""Searches by learned metrics over a library that a worker has analysed and fitted."""
+"""Searches by learned metrics over a library that a worker has analyzed and fitted."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def test_the_same_task_comes_first_and_the_same_person_comes_first(
         assert [hit.clip.person for hit in people.items] == [clip.person] * 2
 
 
-def test_same_style_other_task_and_same_task_other_style(
+def test_metrics_find_a_style_in_other_tasks_and_a_task_in_other_styles(
     ready_library: Library, clip_of: FindClip
 ) -> None:
     walk = clip_of("ada", "walk")
@@ -56,7 +56,7 @@ def test_same_style_other_task_and_same_task_other_style(
 
 
 @pytest.mark.parametrize("method", sorted(LEARNED))
-def test_scores_are_probabilities_and_tell_the_same_from_others(
+def test_scores_are_probabilities_and_higher_for_the_same_label(
     ready_library: Library, ready_clips: list[ClipRecord], method: Method
 ) -> None:
     same, other = [], []
@@ -73,7 +73,7 @@ def test_scores_are_probabilities_and_tell_the_same_from_others(
     assert 0 < min(other) < max(same) <= 1
 
 
-def test_there_are_no_parts_of_clips_by_learned_metrics(
+def test_learned_metrics_do_not_search_parts_of_clips(
     ready_library: Library, clip_of: FindClip
 ) -> None:
     asked = MotionQuery(QuerySource(clip_of("ada", "walk").id), method=TASK, scope="windows")
@@ -119,7 +119,7 @@ def test_new_clips_are_found_without_a_fit_and_a_fit_ends_old_cursors(growing: L
 
 
 @pytest.mark.parametrize("method", sorted(LEARNED))
-def test_without_labels_there_is_no_model_and_the_reason_is_told(
+def test_without_labels_there_is_no_model_and_the_error_says_why(
     lib: Library, some_demo_clips: list[DemoClip], method: Method
 ) -> None:
     made = [
@@ -132,12 +132,12 @@ def test_without_labels_there_is_no_model_and_the_reason_is_told(
     work(lib.settings)
     with pytest.raises(ModelNotFitted, match="two clips each"):
         find.find_motion(lib, MotionQuery(QuerySource(made[0].id), method=method))
-    told = {one.kind: one.reason for one in models.list_unfitted(lib)}
-    assert "two clips each" in told[method.value]
-    assert "words" not in told
+    reasons = {one.kind: one.reason for one in models.list_unfitted(lib)}
+    assert "two clips each" in reasons[method.value]
+    assert "words" not in reasons
 
 
-def test_people_are_not_told_apart_where_that_is_switched_off(
+def test_the_person_metric_is_refused_if_recognizing_persons_is_switched_off(
     tmp_path: Path, some_demo_clips: list[DemoClip]
 ) -> None:
     lib = Library.open(settings_for(tmp_path, recognize_persons=False))

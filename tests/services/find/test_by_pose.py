@@ -1,4 +1,4 @@
-"""Searches by pose over a library that a worker has analysed."""
+"""Searches by pose over a library that a worker has analyzed."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def _pages(lib: Library, size: int, **query: Any) -> list[Hits]:
     return pages
 
 
-def test_the_nearest_frame_of_every_clip_is_told(
+def test_each_hit_has_the_time_of_its_nearest_frame(
     ready_library: Library, ready_clips: list[ClipRecord], clip_of: FindClip
 ) -> None:
     query = clip_of("ada", "kick")
@@ -60,7 +60,9 @@ def test_the_nearest_frame_of_every_clip_is_told(
     assert [hit.rank for hit in hits.items] == list(range(1, len(ready_clips)))
 
 
-def test_a_hit_asked_for_is_found_at_no_distance(ready_library: Library, clip_of: FindClip) -> None:
+def test_the_pose_of_a_hit_is_found_at_distance_zero(
+    ready_library: Library, clip_of: FindClip
+) -> None:
     first = find_pose(
         ready_library, PoseQuery(QuerySource(clip_of("ada", "wave").id), time=TIME)
     ).items[0]
@@ -70,7 +72,7 @@ def test_a_hit_asked_for_is_found_at_no_distance(ready_library: Library, clip_of
     assert found.score == 1.0
 
 
-def test_positions_ask_the_same_wherever_the_body_stands(
+def test_positions_give_the_same_hits_for_any_position_of_the_body(
     ready_library: Library, clip_of: FindClip
 ) -> None:
     query = clip_of("bruno", "bow")
@@ -80,26 +82,28 @@ def test_positions_ask_the_same_wherever_the_body_stands(
     )
     moved = 100 * turned_about_y(pose, 2.5)[0] + np.array([70.0, 5.0, -3.0])
     for positions in (pose[0], moved):
-        told = find_pose(ready_library, PoseQuery(positions=positions.tolist()))
-        assert [h.clip.id for h in told.items] == [h.clip.id for h in by_time.items]
-        assert [h.distance for h in told.items] == pytest.approx(
+        hits = find_pose(ready_library, PoseQuery(positions=positions.tolist()))
+        assert [h.clip.id for h in hits.items] == [h.clip.id for h in by_time.items]
+        assert [h.distance for h in hits.items] == pytest.approx(
             [h.distance for h in by_time.items], abs=1e-5
         )
 
 
 @pytest.mark.parametrize("places", ["best", "all"])
-def test_pages_put_together_are_the_one_ranking(
+def test_all_pages_together_are_the_whole_ranking(
     ready_library: Library, clip_of: FindClip, places: str
 ) -> None:
     query = {"clip_id": clip_of("ada", "walk").id, "time": TIME, "places": places}
     (whole,) = _pages(ready_library, 1000, **query)
-    told = [hit for page in _pages(ready_library, 4, **query) for hit in page.items]
-    assert [(h.rank, h.clip.id, h.time, h.distance) for h in told] == [
+    hits = [hit for page in _pages(ready_library, 4, **query) for hit in page.items]
+    assert [(h.rank, h.clip.id, h.time, h.distance) for h in hits] == [
         (h.rank, h.clip.id, h.time, h.distance) for h in whole.items
     ]
 
 
-def test_a_walk_takes_its_pose_in_every_cycle(ready_library: Library, clip_of: FindClip) -> None:
+def test_the_pose_of_a_walk_is_found_in_every_cycle(
+    ready_library: Library, clip_of: FindClip
+) -> None:
     walk = clip_of("ada", "walk")
     query = PoseQuery(QuerySource(walk.id), time=TIME, places="all", include_self=True, limit=1000)
     hits = [h for h in find_pose(ready_library, query).items if h.clip.id == walk.id]
@@ -120,7 +124,7 @@ def test_a_filter_is_applied_before_the_ranking(ready_library: Library, clip_of:
     assert (nothing.items, nothing.next) == ((), None)
 
 
-def test_a_file_is_asked_by_and_never_stored(
+def test_a_query_by_a_file_does_not_store_it(
     ready_library: Library, some_demo_clips: list[DemoClip], clip_of: FindClip
 ) -> None:
     kick = next(c for c in some_demo_clips if (c.person, c.task) == ("ada", "kick"))
@@ -138,7 +142,7 @@ def _with(index: int, point: Any) -> list[Any]:
 
 
 @pytest.mark.parametrize(
-    ("positions", "location", "told"),
+    ("positions", "location", "message"),
     [
         (GOOD[:12], "positions", "expected 13 points"),
         (_with(3, [float("nan"), 0, 0]), "positions.3", "right_foot"),
@@ -147,17 +151,17 @@ def _with(index: int, point: Any) -> list[Any]:
         (_with(9, [0, True, 0]), "positions.9", "neck"),
         (_with(9, "here"), "positions.9", "neck"),
         (_with(4, [1e9, 0, 0]), "positions.4", "hips: farther than"),
-        ([[1.0, 1.0, 1.0]] * 13, "positions", "all joints are in one place"),
+        ([[1.0, 1.0, 1.0]] * 13, "positions", "all joints have the same position"),
         ([[0.0, 0.1 * i, 0.0] for i in range(13)], "positions.7", "no left and right"),
     ],
 )
 def test_a_bad_pose_is_refused_by_its_joint(
-    ready_library: Library, positions: list[Any], location: str, told: str
+    ready_library: Library, positions: list[Any], location: str, message: str
 ) -> None:
     with pytest.raises(BadField) as refused:
         find_pose(ready_library, PoseQuery(positions=positions))
     place = next(p for p in refused.value.places if p.location == location)
-    assert told in place.message
+    assert message in place.message
 
 
 def test_every_bad_joint_is_named(ready_library: Library) -> None:
@@ -192,7 +196,7 @@ def test_a_bad_query_is_refused_by_its_field(
     assert refused.value.places[0].location == location
 
 
-def test_a_cursor_belongs_to_its_pose(ready_library: Library, clip_of: FindClip) -> None:
+def test_a_cursor_of_another_pose_is_refused(ready_library: Library, clip_of: FindClip) -> None:
     walk = clip_of("ada", "walk").id
     page = find_pose(ready_library, PoseQuery(QuerySource(walk), time=TIME, limit=1))
     with pytest.raises(BadField, match="cursor"):
@@ -201,7 +205,7 @@ def test_a_cursor_belongs_to_its_pose(ready_library: Library, clip_of: FindClip)
         )
 
 
-def test_a_clip_that_is_not_there_or_not_ready(
+def test_a_missing_clip_and_a_clip_that_is_not_ready_are_refused(
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:
     with pytest.raises(ClipNotFound):

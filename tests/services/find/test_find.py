@@ -1,4 +1,4 @@
-"""Searches over a library that a worker has analysed."""
+"""Searches over a library that a worker has analyzed."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def test_every_clip_is_ranked_and_scores_fall_with_distance(
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_pages_put_together_are_the_one_ranking(
+def test_all_pages_together_are_the_whole_ranking(
     ready_library: Library, clip_of: FindClip, method: Method
 ) -> None:
     query = {"clip_id": clip_of("ada", "walk").id, "method": method}
@@ -67,15 +67,15 @@ def test_a_filter_is_applied_before_the_ranking(
     ready_library: Library, clip_of: FindClip, method: Method
 ) -> None:
     query = {"clip_id": clip_of("ada", "walk").id, "method": method}
-    wanted = {"task": ["kick", "bow"], "person": "bruno"}
-    hits = find.find_motion(ready_library, motion_query(limit=2, filter=wanted, **query))
+    conditions = {"task": ["kick", "bow"], "person": "bruno"}
+    hits = find.find_motion(ready_library, motion_query(limit=2, filter=conditions, **query))
     assert {(h.clip.person, h.clip.task) for h in hits.items} == {
         ("bruno", "kick"),
         ("bruno", "bow"),
     }
 
 
-def test_like_motions_are_found_first(ready_library: Library, clip_of: FindClip) -> None:
+def test_similar_motions_are_found_first(ready_library: Library, clip_of: FindClip) -> None:
     for task in ("walk", "wave", "kick", "bow"):
         hits = find.find_motion(
             ready_library, MotionQuery(QuerySource(clip_of("bruno", task).id), limit=1)
@@ -84,7 +84,7 @@ def test_like_motions_are_found_first(ready_library: Library, clip_of: FindClip)
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_a_clip_finds_itself_only_when_asked_to(
+def test_a_clip_finds_itself_only_on_request(
     ready_library: Library, clip_of: FindClip, method: Method
 ) -> None:
     query = clip_of("chika", "wave")
@@ -95,7 +95,7 @@ def test_a_clip_finds_itself_only_when_asked_to(
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_an_upload_finds_its_twin_and_is_not_stored(
+def test_an_upload_finds_the_same_stored_clip_and_is_not_stored(
     ready_library: Library, some_demo_clips: list[DemoClip], clip_of: FindClip, method: Method
 ) -> None:
     demo = next(c for c in some_demo_clips if (c.person, c.task) == ("ada", "kick"))
@@ -149,7 +149,7 @@ def test_a_wrong_field_is_named(
     assert [place.location for place in refused.value.places] == [location]
 
 
-def test_a_cursor_belongs_to_its_question(ready_library: Library, clip_of: FindClip) -> None:
+def test_a_cursor_of_another_query_is_refused(ready_library: Library, clip_of: FindClip) -> None:
     walk, kick = clip_of("ada", "walk").id, clip_of("ada", "kick").id
     cursor = find.find_motion(ready_library, MotionQuery(QuerySource(walk), limit=2)).next
     for other in (
@@ -163,7 +163,7 @@ def test_a_cursor_belongs_to_its_question(ready_library: Library, clip_of: FindC
             find.find_motion(ready_library, other)
 
 
-def test_queries_that_cannot_be_used_say_why(ready_library: Library) -> None:
+def test_queries_that_cannot_be_used_are_refused_with_the_reason(ready_library: Library) -> None:
     with pytest.raises(ClipNotFound):
         find.find_motion(ready_library, MotionQuery(QuerySource("clip_none")))
     with pytest.raises(EmptyFile):
@@ -175,7 +175,7 @@ def test_queries_that_cannot_be_used_say_why(ready_library: Library) -> None:
     assert refused.value.places
 
 
-def test_a_clip_that_is_not_ready_cannot_be_asked_about(lib: Library) -> None:
+def test_a_clip_that_is_not_ready_cannot_be_a_query(lib: Library) -> None:
     queued = clips.create_clip(lib, io.BytesIO(b"HIERARCHY\n"), "a.bvh").clip
     with pytest.raises(ClipNotReady):
         find.find_motion(lib, MotionQuery(QuerySource(queued.id)))
@@ -195,7 +195,7 @@ def test_words_find_the_clips_that_they_describe(ready_library: Library, mode: s
     assert {hit.clip.task for hit in only.items} == {"kick"}
 
 
-def test_words_that_nobody_uses_find_nothing_and_are_told(ready_library: Library) -> None:
+def test_unknown_words_find_nothing_and_are_reported(ready_library: Library) -> None:
     hits = find.find_words(ready_library, WordQuery(["zebra"]))
     assert (hits.items, hits.next, hits.unknown_words) == ((), None, ("zebra",))
 

@@ -77,7 +77,7 @@ def test_a_step_finds_the_same_step_in_other_cycles_and_by_other_dancers(
         assert any(np.allclose((hit.start, hit.end), span, atol=1e-4) for span in spans)
 
 
-def test_the_step_itself_is_left_out_unless_wanted(danced: Library, clip: ClipRecord) -> None:
+def test_the_queried_segment_is_a_hit_only_on_request(danced: Library, clip: ClipRecord) -> None:
     segment = _middle(danced, clip)
     own = list_segments(danced, clip.id).segments[segment]
     without = _search(danced, clip_id=clip.id, segment=segment, limit=1000)
@@ -106,7 +106,7 @@ def test_an_upload_is_taken_as_one_segment(danced: Library, clip: ClipRecord) ->
     assert hits.items[0].start == pytest.approx(own.start, abs=0.05)
 
 
-def test_filters_hold(danced: Library, clip: ClipRecord) -> None:
+def test_filters_apply_to_segments(danced: Library, clip: ClipRecord) -> None:
     segment = _middle(danced, clip)
     hits = _search(danced, clip_id=clip.id, segment=segment, filter={"person": ["bruno"]})
     assert {hit.clip.person for hit in hits.items} == {"bruno"}
@@ -132,7 +132,7 @@ def test_pages_follow_each_other(danced: Library, clip: ClipRecord) -> None:
         _search(danced, clip_id=clip.id, segment=0, limit=5, cursor=first.next)
 
 
-def test_both_methods_are_one(danced: Library, clip: ClipRecord) -> None:
+def test_both_methods_give_the_same_ranking(danced: Library, clip: ClipRecord) -> None:
     asked = {"clip_id": clip.id, "segment": 2}
     fused, vector = (_search(danced, **asked, method=m).items for m in ("fused", "vector"))
     assert fused == vector
@@ -148,7 +148,7 @@ def test_both_methods_are_one(danced: Library, clip: ClipRecord) -> None:
         ({"segment": 1, "method": "dtw"}, "method"),
     ],
 )
-def test_what_does_not_go_together_is_named(
+def test_fields_that_exclude_each_other_are_refused_by_name(
     danced: Library, clip: ClipRecord, asked: dict[str, object], field: str
 ) -> None:
     with pytest.raises(BadField) as caught:

@@ -1,4 +1,4 @@
-"""Searches inside long clips: pieces are cut, warped, turned, moved and hidden, then sought."""
+"""Searches inside long clips, for pieces that were warped, turned, moved and inserted there."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ TASKS = [f"task {number}" for number in range(3)]
 
 @pytest.mark.parametrize("piece", [*PIECES, "ten seconds"])
 @pytest.mark.parametrize(("method", "tolerance"), [("fused", 0.15), ("dtw", 0.15), ("vector", 0.8)])
-def test_a_hidden_piece_is_found_first_and_bounded(
+def test_a_hidden_piece_is_found_first_with_its_start_and_end(
     hidden: Hidden, piece: str, method: str, tolerance: float
 ) -> None:
     hits = sought(hidden, piece, method=method, limit=3).items
@@ -110,7 +110,7 @@ def test_a_hidden_piece_is_found_first_and_bounded(
         assert (hit.start, hit.end) == pytest.approx((start, end), abs=tolerance)
 
 
-def test_a_part_of_a_stored_clip_is_a_query_and_only_its_own_place_is_left_out(
+def test_a_part_of_a_clip_is_a_query_and_only_that_part_is_left_out(
     hidden: Hidden,
 ) -> None:
     clip_id, start, end = hidden.places["kick"][1]
@@ -136,7 +136,7 @@ def test_a_whole_clip_is_a_query_too(hidden: Hidden) -> None:
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_places_do_not_overlap_and_scores_fall_with_distance(hidden: Hidden, method: str) -> None:
+def test_hits_do_not_overlap_and_scores_fall_with_distance(hidden: Hidden, method: str) -> None:
     hits = sought(hidden, "kick", method=method, limit=1000)
     assert hits.method == method
     assert hits.next is None
@@ -157,7 +157,7 @@ def test_places_do_not_overlap_and_scores_fall_with_distance(hidden: Hidden, met
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_pages_put_together_are_the_one_ranking(hidden: Hidden, method: str) -> None:
+def test_all_pages_together_are_the_whole_ranking(hidden: Hidden, method: str) -> None:
     whole = sought(hidden, "short", method=method, limit=1000).items
     pages = [sought(hidden, "short", method=method, limit=17)]
     while pages[-1].next is not None:
@@ -195,16 +195,16 @@ def test_a_wrong_field_is_named(hidden: Hidden, query: dict[str, Any], location:
     assert [place.location for place in refused.value.places] == [location]
 
 
-def test_a_query_that_is_too_long_is_told_how_long_it_may_be(hidden: Hidden) -> None:
+def test_a_too_long_query_is_refused_with_the_limit(hidden: Hidden) -> None:
     body = np.tile(hidden.pieces["ten seconds"], (13, 1, 1))
-    with pytest.raises(BadField, match=r"120 s .* 130\.0 s") as refused:
+    with pytest.raises(BadField, match=r"120 s.*130\.0 s") as refused:
         search(hidden.lib, content=io.BytesIO(npz_of(body, 30.0)))
     assert [place.location for place in refused.value.places] == ["end"]
     part = search(hidden.lib, content=io.BytesIO(npz_of(body, 30.0)), end=MAX_SECONDS)
     assert part.items
 
 
-def test_a_cursor_belongs_to_its_question(hidden: Hidden) -> None:
+def test_a_cursor_of_another_query_is_refused(hidden: Hidden) -> None:
     clip_id = hidden.ids["long"]
     asked = {"clip_id": clip_id, "start": 2.0, "end": 4.0, "limit": 1}
     cursor = search(hidden.lib, **asked).next
@@ -215,7 +215,7 @@ def test_a_cursor_belongs_to_its_question(hidden: Hidden) -> None:
             find.find_motion(hidden.lib, motion_query(**query))
 
 
-def test_what_comes_and_goes_is_followed_while_pages_stay_in_step(
+def test_searches_follow_new_and_deleted_clips_while_pages_stay_consistent(
     lib: Library, hidden: Hidden
 ) -> None:
     piece = hidden.pieces["kick"]

@@ -1,4 +1,4 @@
-"""The map of all motions: every clip once, like ones near each other, new ones at once."""
+"""The map of all motions: a point for each clip, similar clips near, new clips at once."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.libraries import upload, work
 
 @pytest.mark.parametrize("name", space.SPACES)
 @pytest.mark.parametrize("dimensions", space.DIMENSIONS)
-def test_every_clip_is_on_the_map_near_its_like(
+def test_every_clip_is_on_the_map_near_similar_clips(
     ready_library: Library, name: str, dimensions: int
 ) -> None:
     found = space.draw_map(ready_library, name, dimensions)
@@ -59,7 +59,7 @@ def test_an_empty_library_has_an_empty_map(lib: Library) -> None:
         ({"limit": 0}, "limit"),
     ],
 )
-def test_what_cannot_be_drawn_is_told(
+def test_impossible_maps_are_refused(
     ready_library: Library, asked: dict[str, object], field: str
 ) -> None:
     with pytest.raises(BadField) as refused:

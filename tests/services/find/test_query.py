@@ -1,4 +1,4 @@
-"""From a QuerySource to what is analyzed, and what is known of it afterwards."""
+"""From a QuerySource to its analysis request and its descriptors."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from app.services.library.library import Library
 from app.store.clips.record import ClipRecord
 
 
-def test_an_analysis_is_asked_for_with_all_that_is_said_of_an_upload() -> None:
+def test_the_analysis_request_has_all_hints_of_an_upload() -> None:
     source = QuerySource(
         content=io.BytesIO(b"motion"),
         skeleton=io.BytesIO(b"skeleton"),
@@ -51,7 +51,7 @@ def test_a_query_is_a_clip_or_a_file(ready_library: Library, source: QuerySource
         describe(ready_library, source, ("features_10hz",))
 
 
-def test_a_part_of_a_stored_clip_knows_where_it_lies(ready_clips: list[ClipRecord]) -> None:
+def test_a_part_of_a_stored_clip_has_its_interval(ready_clips: list[ClipRecord]) -> None:
     clip = ready_clips[0]
     duration = clip.duration or 0.0
 
@@ -65,7 +65,7 @@ def test_a_part_of_a_stored_clip_knows_where_it_lies(ready_clips: list[ClipRecor
     assert interval == proposals.ExcludedInterval(clip.id, 0.5, 0.75)
 
 
-def test_an_upload_is_as_long_as_its_positions_and_lies_nowhere() -> None:
+def test_an_upload_has_the_duration_of_its_positions_and_no_interval() -> None:
     arrays = {"role_positions": np.zeros((60, 13, 3))}
     query = QueryDescriptors(QuerySource(content=io.BytesIO(b"x"), start=1.0), arrays, None)
     assert (query.seconds, query.interval) == (2.0, None)

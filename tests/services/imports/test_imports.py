@@ -1,4 +1,4 @@
-"""Imports of folders and archives, once, twice, cut off and cancelled."""
+"""Imports of folders and archives: once, twice, interrupted and canceled."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def _said(clip: DemoClip) -> str:
 
 @pytest.fixture
 def entries(some_demo_clips: list[DemoClip]) -> dict[str, bytes]:
-    """Two clips with a manifest, and what else lies about in folders."""
+    """Two clips with a manifest, and other files that a folder may have."""
     two = some_demo_clips[:2]
     lines = ["path,person,task,words,fps", *map(_said, two), "gone.bvh,ada,walk,,"]
     return {
@@ -49,7 +49,7 @@ def _write(folder: Path, entries: dict[str, bytes]) -> Path:
 
 
 @pytest.mark.parametrize("first", ["walk.npy", "positions.npy"])
-def test_any_zip_may_be_imported_whatever_its_first_file(lib: Library, first: str) -> None:
+def test_a_zip_with_any_first_file_can_be_imported(lib: Library, first: str) -> None:
     with pytest.raises(UnknownFormat):
         imports.start_import(lib, io.BytesIO(b"\x93NUMPY" + bytes(99)), "set.zip")
     job = imports.start_import(lib, zip_archive({first: b"x", "b.bvh": b"y"}), "set.zip")
@@ -69,7 +69,7 @@ def _claim(lib: Library) -> ClaimedJob:
     return claimed
 
 
-def test_an_archive_becomes_clips_and_every_file_is_accounted_for(
+def test_an_archive_becomes_clips_and_every_file_has_an_outcome(
     lib: Library, entries: dict[str, bytes], some_demo_clips: list[DemoClip]
 ) -> None:
     job = imports.start_import(lib, zip_archive(entries), "set.zip")
@@ -109,7 +109,7 @@ def test_the_same_folder_twice_gives_the_same_clips(
 ) -> None:
     folder = _write(tmp_path / "in", entries)
     seen: list[tuple[int, int, str]] = []
-    first = imports.import_path(lib, folder, lambda *told: seen.append(told))
+    first = imports.import_path(lib, folder, lambda *progress: seen.append(progress))
     assert seen[-1][0] == 6
     work(lib.settings)
     before = {c.id: c.state for c in clips.list_clips(lib).items}
@@ -122,7 +122,7 @@ def test_the_same_folder_twice_gives_the_same_clips(
     }
 
 
-def test_an_import_that_was_cut_off_goes_on_where_it_stopped(
+def test_an_interrupted_import_continues_where_it_stopped(
     lib: Library, entries: dict[str, bytes]
 ) -> None:
     job = imports.start_import(lib, zip_archive(entries), "set.zip")
@@ -177,7 +177,7 @@ def test_an_archive_that_cannot_be_used_fails_with_its_reason(lib: Library) -> N
     assert [error and error["code"] for error in errors] == ["unreadable", "unreadable"]
 
 
-def test_what_is_no_archive_is_refused_at_once(lib: Library, tmp_path: Path) -> None:
+def test_a_file_that_is_no_archive_is_refused_at_once(lib: Library, tmp_path: Path) -> None:
     with pytest.raises(EmptyFile):
         imports.start_import(lib, io.BytesIO(b""), "a.zip")
     with pytest.raises(UnknownFormat):
@@ -207,7 +207,7 @@ def test_a_file_or_an_archive_can_be_imported_from_disk(
 
 
 @pytest.mark.parametrize("compression", [zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
-def test_a_damaged_file_in_an_archive_does_not_hold_up_the_others(
+def test_a_damaged_file_in_an_archive_does_not_stop_the_others(
     lib: Library, some_demo_clips: list[DemoClip], compression: int
 ) -> None:
     one, other = (clip.content for clip in some_demo_clips[:2])
@@ -222,7 +222,7 @@ def test_a_damaged_file_in_an_archive_does_not_hold_up_the_others(
     assert _outcomes(done.result) == {"bad.bvh": "failed", "good.bvh": "ready"}
 
 
-def test_a_damaged_manifest_fails_the_import_rather_than_lose_its_labels(lib: Library) -> None:
+def test_a_damaged_manifest_fails_the_whole_import(lib: Library) -> None:
     content = bytearray(
         zip_archive({"manifest.csv": b"path,person\n" + b"a.bvh,ada\n" * 99}).getvalue()
     )

@@ -1,4 +1,4 @@
-"""Imports that are large, or say that they are: bounded, taking turns, and told in pages."""
+"""Large imports: they have limits, take turns, and list their files in pages."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from app.services.clips import jobs
 from app.services.clips.jobs import FIRST_FILES
 from app.services.imports import imports
 from app.services.imports import register as import_register
-from app.services.imports.plan import MOST_ABSENT
+from app.services.imports.plan import MAX_ABSENT_LISTED
 from app.services.library.library import Library
 from app.store.jobs import queue
 from app.store.jobs.import_files import FileOutcome
@@ -41,7 +41,7 @@ def _unpack(lib: Library, claimed: ClaimedJob) -> JobRecord:
 
 
 def _bad(count: int) -> list[tuple[str, bytes]]:
-    """Files that become clips, and fail when they are analysed; each is another."""
+    """Different files that become clips and fail in their analysis."""
     return [(f"bad_{i:03d}.bvh", f"HIERARCHY\nROOT {i}\n".encode()) for i in range(count)]
 
 
@@ -49,7 +49,7 @@ def _manifest(rows: int) -> tuple[str, bytes]:
     return "manifest.csv", b"path\n" + b"".join(b"gone_%06d.bvh\n" % i for i in range(rows))
 
 
-def test_paths_that_a_manifest_names_in_vain_are_counted_and_the_first_are_listed(
+def test_missing_files_of_a_manifest_are_counted_and_the_first_are_listed(
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:
     good = ("here.bvh", some_demo_clips[0].content)
@@ -61,7 +61,7 @@ def test_paths_that_a_manifest_names_in_vain_are_counted_and_the_first_are_liste
     assert job.result is not None
     assert (job.result["total"], job.result["absent"], job.result["ready"]) == (5001, 5000, 1)
     absent = list(jobs.all_files(lib, job.id, FileOutcome.ABSENT))
-    assert [file.path for file in absent] == [f"gone_{i:06d}.bvh" for i in range(MOST_ABSENT)]
+    assert [file.path for file in absent] == [f"gone_{i:06d}.bvh" for i in range(MAX_ABSENT_LISTED)]
     assert absent[0].error is not None
     assert absent[0].error["errors"][0]["location"] == "manifest.csv line 2"
 
@@ -98,9 +98,7 @@ def test_the_result_of_a_large_import_is_small_and_its_files_are_paged(lib: Libr
         jobs.list_files(lib, job.id, cursor="nonsense")
 
 
-def test_of_many_files_those_that_failed_are_told_first(
-    lib: Library, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_result_lists_failed_files_first(lib: Library, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(jobs, "FIRST_FILES", 3)
     files = [*_bad(4), ("z_empty.bvh", b""), ("y_notes.txt", b"notes")]
     imports.start_import(lib, zip_archive(files), "a.zip")
@@ -109,8 +107,8 @@ def test_of_many_files_those_that_failed_are_told_first(
         clips.delete_clip(lib, clip.id)
     job = jobs.get_job(lib, claimed.job.id)
     assert job.result is not None
-    told = [(line["path"], line["outcome"]) for line in job.result["files"]]
-    assert told == [
+    listed = [(line["path"], line["outcome"]) for line in job.result["files"]]
+    assert listed == [
         ("bad_000.bvh", "deleted"),
         ("y_notes.txt", "failed"),
         ("z_empty.bvh", "failed"),
@@ -133,10 +131,10 @@ def test_files_without_a_clip_are_recorded_together(
     monkeypatch.setattr(lib.store.database, "write", counted)
     _unpack(lib, claimed)
     # beside the entries: the end of the import, and the removal of its archive
-    assert writes["write"] <= 1200 / import_register.MOST_TOGETHER + 3
+    assert writes["write"] <= 1200 / import_register.MAX_PROBLEMS_TOGETHER + 3
 
 
-def test_small_files_that_are_no_motion_never_reach_the_disk(
+def test_small_files_that_are_no_motion_are_not_written_to_disk(
     lib: Library, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     files = [("empty.bvh", b""), ("notes.txt", b"notes\n" * 10_000), ("good.bvh", _bad(1)[0][1])]
@@ -156,12 +154,12 @@ def test_small_files_that_are_no_motion_never_reach_the_disk(
 
 
 def _end_turns_with_each_file(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A clock that goes on by the length of a turn whenever it is read."""
+    """A clock that advances by the length of a turn with each reading."""
     ticks = itertools.count(step=imports.TURN_S)
     monkeypatch.setattr(imports, "time", SimpleNamespace(monotonic=ticks.__next__))
 
 
-def test_an_import_lets_another_go_first_and_goes_on_afterwards(
+def test_an_import_lets_another_import_run_and_continues_later(
     lib: Library, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     _end_turns_with_each_file(monkeypatch)
@@ -172,7 +170,7 @@ def test_an_import_lets_another_go_first_and_goes_on_afterwards(
     )
     waiting = _unpack(lib, claimed)
     assert (waiting.state, waiting.progress) == (JobState.QUEUED, pytest.approx(1 / 3))
-    assert waiting.detail == "1 of 3 files; others go first"
+    assert waiting.detail == "1 of 3 files; waiting for other imports"
     following = _claim(lib)
     assert following.job.id == small.id
     _unpack(lib, following)
@@ -185,7 +183,7 @@ def test_an_import_lets_another_go_first_and_goes_on_afterwards(
     assert len(clips.list_clips(lib).items) == 4
 
 
-def test_an_import_alone_goes_on_without_a_break(
+def test_a_single_import_runs_without_a_break(
     lib: Library, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     _end_turns_with_each_file(monkeypatch)
@@ -209,7 +207,7 @@ def test_an_import_can_be_canceled_between_its_turns(
     assert clip.error["code"] == "canceled"
 
 
-def test_the_clips_of_a_large_import_stand_back_behind_those_of_a_small_one(
+def test_clips_of_a_small_import_go_before_those_of_a_large_one(
     lib: Library, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(import_register, "FIRST_CLIPS", 2)
@@ -225,7 +223,7 @@ def test_the_clips_of_a_large_import_stand_back_behind_those_of_a_small_one(
     assert [names[clip_id] for clip_id in order].index("small") == 1
 
 
-def test_a_path_that_is_too_long_is_told_and_repeated_names_never_collide(
+def test_a_too_long_path_is_refused_and_repeated_names_do_not_collide(
     lib: Library, recwarn: pytest.WarningsRecorder
 ) -> None:
     long = "x" * 3000 + ".bvh"
@@ -246,7 +244,7 @@ def test_a_path_that_is_too_long_is_told_and_repeated_names_never_collide(
 
 
 @pytest.mark.parametrize("letter", ["é", "\N{GRINNING FACE}", "\x01", '"'])
-def test_the_cursor_after_a_long_path_is_taken(lib: Library, letter: str) -> None:
+def test_a_cursor_after_a_long_path_is_accepted(lib: Library, letter: str) -> None:
     names = [letter * 490 + f"{i}.bvh" for i in range(3)]
     imports.start_import(lib, zip_archive((name, b"") for name in names), "a.zip")
     job = _unpack(lib, _claim(lib))

@@ -1,4 +1,4 @@
-"""Manifests: read rightly, or refused with the line."""
+"""Manifests: they are read correctly, or refused with the line."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def _read(content: bytes, folder: str = "", limits: ManifestLimits = FEW_ROWS) -
     return manifest
 
 
-def test_a_row_tells_all_that_its_columns_hold() -> None:
+def test_a_row_has_the_values_of_all_columns() -> None:
     manifest = _read(TABLE.encode(), "set")
     row = manifest.row("set/a.bvh")
     words = ("walk", "slow", "left_leg")
@@ -41,7 +41,7 @@ def test_a_row_tells_all_that_its_columns_hold() -> None:
 
 
 @pytest.mark.parametrize("separator", [";", "\t"])
-def test_what_spreadsheets_of_other_countries_write_is_read(separator: str) -> None:
+def test_separators_of_all_spreadsheet_programs_are_read(separator: str) -> None:
     table = "path,person,words\na.bvh,ada,walk slow\n".replace(",", separator)
     row = _read(table.encode()).row("a.bvh")
     assert (row.labels.person, row.labels.words) == ("ada", ("walk", "slow"))
@@ -57,7 +57,7 @@ def test_a_row_that_cannot_be_used_keeps_its_problem(line: str, part: str) -> No
     assert row.problem.places[0].location == f"manifest.csv line 2: {part}"
 
 
-def test_a_path_named_twice_is_a_problem_of_its_own() -> None:
+def test_a_path_named_twice_is_a_problem() -> None:
     row = _read(b"path,person\na.bvh,ada\n./a.bvh,bruno\n").row("a.bvh")
     assert row.problem is not None
     assert "line 3" in row.problem.places[0].location
@@ -72,14 +72,14 @@ def test_a_path_named_twice_is_a_problem_of_its_own() -> None:
         (b'path,person\n"a.bvh,ada\n', 2),
     ],
 )
-def test_what_is_no_manifest_is_refused_with_the_line(content: bytes, line: int) -> None:
+def test_content_that_is_no_manifest_is_refused_with_the_line(content: bytes, line: int) -> None:
     with pytest.raises(Unreadable) as refused:
         _read(content)
     assert refused.value.places[0].location == f"manifest.csv line {line}"
 
 
 @given(st.binary(max_size=300))
-def test_no_bytes_make_anything_but_rows_or_a_refusal(content: bytes) -> None:
+def test_any_bytes_give_rows_or_an_error(content: bytes) -> None:
     try:
         _read(b"path,words,fps\n" + content)
     except KinedexError:
@@ -87,7 +87,7 @@ def test_no_bytes_make_anything_but_rows_or_a_refusal(content: bytes) -> None:
 
 
 class _Endless:
-    """A manifest that never ends; `given` tells how many bytes of it were read."""
+    """A manifest that never ends; `given` is the number of bytes that were read."""
 
     def __init__(self, head: bytes, again: bytes) -> None:
         self.given = 0
@@ -101,7 +101,7 @@ class _Endless:
 
 
 @pytest.mark.parametrize(
-    ("head", "again", "told"),
+    ("head", "again", "message"),
     [
         (b"path\n", b"a.bvh\n", "more than 5 rows"),
         (b"path\n", b"\n", "more than 5 rows"),
@@ -112,12 +112,12 @@ class _Endless:
         (b"", b"path,", f"more than {MAX_ROW} characters"),
     ],
 )
-def test_a_manifest_without_end_is_refused_with_the_line_before_much_of_it_is_read(
-    head: bytes, again: bytes, told: str
+def test_an_endless_manifest_is_refused_with_the_line_after_few_bytes(
+    head: bytes, again: bytes, message: str
 ) -> None:
     content = _Endless(head, again)
     manifest = Manifest(FEW_ROWS)
-    with pytest.raises((TooLarge, Unreadable), match=told) as refused:
+    with pytest.raises((TooLarge, Unreadable), match=message) as refused:
         manifest.read(content)
     assert refused.value.places[0].location.startswith("manifest.csv line ")
     assert content.given < 2 * MAX_ROW
@@ -140,13 +140,13 @@ def test_limits_hold_for_all_manifests_of_an_import_together() -> None:
     assert refused.value.places[0].location == "manifest.csv line 4"
 
 
-def test_of_two_manifests_the_later_counts() -> None:
+def test_the_later_of_two_manifests_counts() -> None:
     manifest = _read(b"path,person\nset/a.bvh,ada\n")
     manifest.read(io.BytesIO(b"person,path\nbruno,a.bvh\n"), "set")
     assert manifest.row("set/a.bvh").labels.person == "bruno"
 
 
-def test_recordings_are_named_with_their_line_and_as_seen_from_the_root() -> None:
+def test_recordings_have_their_line_and_their_path_from_the_root() -> None:
     manifest = _read(b"path,audio\na.bvh,../song.mp3\n", "set/in")
     assert manifest.recordings() == {"set/song.mp3": 2}
     assert manifest.row("set/in/a.bvh").audio == "set/song.mp3"

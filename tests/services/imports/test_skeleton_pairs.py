@@ -1,4 +1,4 @@
-"""Skeletons are found for motions by name, in the same folder first."""
+"""The skeleton of a motion is found by its name, first in the same folder."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from app.services.imports.skeleton_pairs import pair_skeletons
 
 
 @pytest.mark.parametrize(
-    ("motion", "skeletons", "wanted"),
+    ("motion", "skeletons", "expected"),
     [
         ("07_01.amc", ["07.asf", "08.asf"], "07.asf"),
         ("07/07_01.AMC", ["08/08.asf", "07/07.ASF"], "07/07.ASF"),
@@ -30,19 +30,19 @@ from app.services.imports.skeleton_pairs import pair_skeletons
         ("07_01.amc", [], None),
     ],
 )
-def test_pairs(motion: str, skeletons: list[str], wanted: str | None) -> None:
+def test_pairs(motion: str, skeletons: list[str], expected: str | None) -> None:
     for paths in ([motion, *skeletons], [*skeletons, motion]):
-        assert pair_skeletons(paths).get(motion) == wanted
+        assert pair_skeletons(paths).get(motion) == expected
 
 
-def test_many_files_pair_in_no_time() -> None:
+def test_many_files_are_paired() -> None:
     paths = [f"{i}/{i}_{j}.amc" for i in range(300) for j in range(30)]
     paths += [f"{i}/{i}.asf" for i in range(300)]
     assert len(pair_skeletons(paths)) == 9000
 
 
-def _walked(motion: str, skeletons: list[str]) -> str | None:
-    """The naive twin: of the skeletons with the longest fitting stem, by a look at each."""
+def _naive_pair(motion: str, skeletons: list[str]) -> str | None:
+    """A naive search of all skeletons, with the same rules."""
 
     def stem(path: str) -> str:
         return PurePosixPath(path).stem.lower()
@@ -77,11 +77,11 @@ _STEMS = st.lists(st.sampled_from("xy"), min_size=1, max_size=3).map("_".join)
 
 
 @given(_FOLDERS, _STEMS, st.lists(st.tuples(_FOLDERS, _STEMS), unique=True, max_size=8))
-def test_a_pair_is_the_one_that_a_look_at_every_skeleton_finds(
+def test_the_pair_is_the_same_as_by_a_search_of_all_skeletons(
     folder: str, stem: str, others: list[tuple[str, str]]
 ) -> None:
     motion, skeletons = f"{folder}{stem}.amc", [f"{f}{s}.asf" for f, s in others]
-    assert pair_skeletons([motion, *skeletons]).get(motion) == _walked(motion, skeletons)
+    assert pair_skeletons([motion, *skeletons]).get(motion) == _naive_pair(motion, skeletons)
 
 
 def test_very_many_skeletons_are_found_by_few_comparisons() -> None:

@@ -1,4 +1,4 @@
-"""Analyses that hang, eat memory, die or outgrow the limits cost one failure each."""
+"""An analysis that hangs, crashes or exceeds a limit fails alone; the next one succeeds."""
 
 from __future__ import annotations
 
@@ -38,30 +38,30 @@ def pool() -> Iterator[AnalysisPool]:
     opened.close()
 
 
-def test_an_analysis_comes_back_with_its_arrays(
+def test_an_analysis_returns_motion_and_arrays(
     pool: AnalysisPool, some_demo_clips: list[DemoClip], tmp_path: Path
 ) -> None:
     clip = some_demo_clips[0]
-    found = pool.analyze(AnalysisRequest(content=clip.content))
-    assert found.motion.frame_rate == clip.frame_rate
-    assert "symbol_means" in found.arrays
+    analysis = pool.analyze(AnalysisRequest(content=clip.content))
+    assert analysis.motion.frame_rate == clip.frame_rate
+    assert "symbol_means" in analysis.arrays
     (tmp_path / "a.bvh").write_bytes(clip.content)
-    told = AnalysisRequest(path=str(tmp_path / "a.bvh"), frame_rate=24.0, metres_per_unit=0.02)
-    again = pool.analyze(told)
-    assert (again.motion.frame_rate, again.motion.metres_per_unit) == (24.0, 0.02)
+    request = AnalysisRequest(path=str(tmp_path / "a.bvh"), frame_rate=24.0, metres_per_unit=0.02)
+    with_hints = pool.analyze(request)
+    assert (with_hints.motion.frame_rate, with_hints.motion.metres_per_unit) == (24.0, 0.02)
     assert (
         "symbol_means"
         not in pool.analyze(AnalysisRequest(content=clip.content, for_search=True)).arrays
     )
 
 
-def test_the_readers_own_failure_keeps_its_place(pool: AnalysisPool) -> None:
+def test_a_readers_error_keeps_the_line_number(pool: AnalysisPool) -> None:
     with pytest.raises(Unreadable) as refused:
         pool.analyze(AnalysisRequest(content=b"HIERARCHY\nROOT a\n{\n  OFSET 0 0 0\n"))
     assert "line" in refused.value.places[0].location
 
 
-def test_a_joint_name_that_the_file_lacks_is_told(
+def test_a_hint_with_an_unknown_joint_is_refused_by_its_role(
     pool: AnalysisPool, some_demo_clips: list[DemoClip]
 ) -> None:
     with pytest.raises(KinedexError) as refused:
@@ -70,14 +70,14 @@ def test_a_joint_name_that_the_file_lacks_is_told(
 
 
 def test_frames_and_joints_are_limited(some_demo_clips: list[DemoClip]) -> None:
-    tight = AnalysisPool(Limits(60.0, 2048, frames=5, joints=100))
+    pool = AnalysisPool(Limits(60.0, 2048, frames=5, joints=100))
     with pytest.raises(TooLarge) as refused:
-        tight.analyze(AnalysisRequest(content=some_demo_clips[0].content))
+        pool.analyze(AnalysisRequest(content=some_demo_clips[0].content))
     assert refused.value.places[0].location == "frames"
-    tight.close()
+    pool.close()
 
 
-def test_an_analysis_that_nobody_waits_for_is_stopped_and_the_next_one_done(
+def test_after_the_client_left_the_analysis_stops_and_the_next_one_succeeds(
     some_demo_clips: list[DemoClip],
 ) -> None:
     pool = AnalysisPool(Limits(600.0, 2048, 10_000_000, 100))
@@ -90,22 +90,22 @@ def test_an_analysis_that_nobody_waits_for_is_stopped_and_the_next_one_done(
     pool.close()
 
 
-def test_an_analysis_over_its_time_is_stopped_and_the_next_one_done(
+def test_an_analysis_beyond_its_time_limit_stops_and_the_next_one_runs(
     some_demo_clips: list[DemoClip],
 ) -> None:
-    hasty = AnalysisPool(Limits(0.3, 2048, 10_000_000, 100))
+    pool = AnalysisPool(Limits(0.3, 2048, 10_000_000, 100))
     with pytest.raises(AnalysisTimedOut):
-        hasty.analyze(AnalysisRequest(content=repeated(some_demo_clips[0], LONG)))
+        pool.analyze(AnalysisRequest(content=repeated(some_demo_clips[0], LONG)))
     with pytest.raises(Unreadable):
-        hasty.analyze(AnalysisRequest(content=b"HIERARCHY\n"))
-    hasty.close()
+        pool.analyze(AnalysisRequest(content=b"HIERARCHY\n"))
+    pool.close()
 
 
-def test_an_analysis_over_its_memory_fails(some_demo_clips: list[DemoClip]) -> None:
-    poor = AnalysisPool(Limits(60.0, 420, 10_000_000, 100))
+def test_an_analysis_beyond_its_memory_limit_fails(some_demo_clips: list[DemoClip]) -> None:
+    pool = AnalysisPool(Limits(60.0, 420, 10_000_000, 100))
     with pytest.raises(AnalysisCrashed, match=r"memory|died"):
-        poor.analyze(AnalysisRequest(content=repeated(some_demo_clips[0], LONG)))
-    poor.close()
+        pool.analyze(AnalysisRequest(content=repeated(some_demo_clips[0], LONG)))
+    pool.close()
 
 
 def test_a_killed_child_is_replaced(pool: AnalysisPool, some_demo_clips: list[DemoClip]) -> None:

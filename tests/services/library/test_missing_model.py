@@ -1,4 +1,4 @@
-"""Why a model is not there, and what to do about it."""
+"""The errors for missing models: the reason, and what the client can do."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tests.libraries import upload, work
 from tests.models.word_clips import word_clips
 
 
-def test_a_model_of_another_version_is_to_be_fitted_again(lib: Library) -> None:
+def test_the_error_for_a_model_of_another_version_says_to_fit_again(lib: Library) -> None:
     meta = {"model": {"version": -1}}
     with lib.store.write() as tx:
         stored.save(tx, "multilinear", meta=meta, arrays={}, library_version=1, library_size=2)
@@ -32,19 +32,19 @@ def test_a_model_of_another_version_is_to_be_fitted_again(lib: Library) -> None:
 
 @pytest.fixture(scope="module")
 def fitted_words() -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-    """A model of words with all its parts, taken apart."""
+    """The arrays and the metadata of a word model that has all its parts."""
     return fit_library_words(*word_clips(6)).words.to_arrays()
 
 
 @pytest.mark.parametrize("part", ["model", "space", "correlated"])
-def test_words_of_another_version_are_explained_like_all_models(
+def test_a_word_model_with_a_part_of_another_version_gives_the_same_error(
     lib: Library, fitted_words: tuple[dict[str, np.ndarray], dict[str, Any]], part: str
 ) -> None:
     arrays, meta = fitted_words
     meta = meta | {part: meta[part] | {"version": -1}}
     with lib.store.write() as tx:
-        kept = {"model": meta}
-        stored.save(tx, "words", meta=kept, arrays=arrays, library_version=1, library_size=2)
+        whole = {"model": meta}
+        stored.save(tx, "words", meta=whole, arrays=arrays, library_version=1, library_size=2)
     with pytest.raises(ModelNotFitted, match=r"another version of Kinedex.*POST /v1/models/fit"):
         lib.models.words(lib.store)
     job = models.request_fit(lib)
@@ -52,7 +52,7 @@ def test_words_of_another_version_are_explained_like_all_models(
         lib.models.words(lib.store)
 
 
-def test_during_an_upgrade_it_is_said_that_the_fit_follows(
+def test_during_an_upgrade_the_error_says_that_a_fit_follows(
     lib: Library, some_demo_clips: list[DemoClip], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     meta = {"model": {"version": -1}}
@@ -69,15 +69,15 @@ def test_during_an_upgrade_it_is_said_that_the_fit_follows(
     assert not isinstance(refused.value, ModelBeingFitted)
 
     assert reanalysis.requeue_outdated(lib) == 1
-    for ask, why in (
+    for load, reason in (
         (lib.models.multilinear, "another version"),
         (lib.models.synthesis, "No synthesis model"),
     ):
-        with pytest.raises(ModelBeingFitted, match=f"{why}.*anew by themselves.*ask again"):
-            ask(lib.store)
+        with pytest.raises(ModelBeingFitted, match=f"{reason}.*without a request.*try again"):
+            load(lib.store)
 
 
-def test_without_a_fit_it_is_said_what_to_do(lib: Library) -> None:
+def test_without_a_fit_the_error_says_how_to_fit(lib: Library) -> None:
     with pytest.raises(ModelNotFitted, match=r"No words model .* `kinedex fit`"):
         lib.models.words(lib.store)
     with pytest.raises(ModelNotFitted):

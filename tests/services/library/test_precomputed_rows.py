@@ -1,4 +1,4 @@
-"""What a fit made of its clips is read with the model, but for clips that changed since."""
+"""Outputs of a model that are stored with it are read for all clips that did not change since."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from app.services.find import by_words as word_ranking
 from app.services.find.find import find_words
 from app.services.find.queries import WordQuery
 from app.services.library.library import Library
-from app.services.library.precomputed_rows import OUTPUTS, POINTS, read_known
+from app.services.library.precomputed_rows import OUTPUTS, POINTS, read_precomputed
 from app.services.training.models import request_fit
 from tests.libraries import upload, work
 
 
-def test_the_first_search_computes_nothing_but_what_changed(
+def test_the_first_search_computes_outputs_only_for_changed_clips(
     lib: Library, some_demo_clips: list[DemoClip], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     ids = [upload(lib, clip).clip.id for clip in some_demo_clips[:6]]
@@ -37,10 +37,10 @@ def test_the_first_search_computes_nothing_but_what_changed(
     update_clip(lib, ids[0], {"words": ["something"]})
     model = lib.models.words(lib.store)
     for name in (OUTPUTS, POINTS):
-        known, rows = read_known(lib, model.id, name)
-        assert set(known) == set(ids[1:])
+        unchanged, rows = read_precomputed(lib, model.id, name)
+        assert set(unchanged) == set(ids[1:])
         assert len(rows) == 5
     outputs = predict(lib, model.model, ids[1:])
-    known, rows = read_known(lib, model.id, OUTPUTS)
-    for clip_id, row in zip(known, rows, strict=True):
+    unchanged, rows = read_precomputed(lib, model.id, OUTPUTS)
+    for clip_id, row in zip(unchanged, rows, strict=True):
         np.testing.assert_allclose(row, outputs[clip_id], atol=1e-6)

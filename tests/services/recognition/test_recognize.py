@@ -1,4 +1,4 @@
-"""Who does what in which words, by models that a worker has fitted."""
+"""Recognition of person, task and words by models that a worker has fitted."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ from tests.libraries import FindClip, settings_for, upload, work
 def test_a_stored_clip_is_recognized(
     ready_library: Library, clip_of: FindClip, method: str
 ) -> None:
-    asked = RecognizeQuery(QuerySource(clip_of("ada", "wave").id), method=method)
-    found = recognize.recognize(ready_library, asked)
+    query = RecognizeQuery(QuerySource(clip_of("ada", "wave").id), method=method)
+    found = recognize.recognize(ready_library, query)
     assert found.task.candidates[0].label == "wave"
     assert found.person.candidates[0].label == "ada"
     scores = [score for _, score in found.words]
@@ -34,11 +34,11 @@ def test_a_stored_clip_is_recognized(
     assert scores == sorted(scores, reverse=True)
 
 
-def test_what_is_known_is_taken_as_given(ready_library: Library, clip_of: FindClip) -> None:
-    asked = RecognizeQuery(
+def test_a_known_person_or_task_is_the_answer(ready_library: Library, clip_of: FindClip) -> None:
+    query = RecognizeQuery(
         QuerySource(clip_of("ada", "wave").id), known_person="ada", known_task=" wave "
     )
-    found = recognize.recognize(ready_library, asked)
+    found = recognize.recognize(ready_library, query)
     assert (found.person.label, found.task.label) == ("ada", "wave")
 
 
@@ -56,14 +56,14 @@ def test_an_upload_is_recognized_as_its_stored_twin(
     assert theirs.words[0] == pytest.approx(ours.words[0])
 
 
-def test_another_method_is_refused(ready_library: Library, clip_of: FindClip) -> None:
+def test_an_unknown_method_is_refused(ready_library: Library, clip_of: FindClip) -> None:
     with pytest.raises(BadField, match="method"):
         recognize.recognize(
             ready_library, RecognizeQuery(QuerySource(clip_of("ada", "bow").id), method="x")
         )
 
 
-def test_models_tell_what_they_were_fitted_on_and_how_good_they_are(
+def test_models_have_their_library_size_and_held_out_figures(
     ready_library: Library,
 ) -> None:
     fitted = {record.kind: record for record in models.list_models(ready_library)}
@@ -76,7 +76,7 @@ def test_models_tell_what_they_were_fitted_on_and_how_good_they_are(
     assert "default" in fitted["recogniser"].meta["figures"]["held_out"]
 
 
-def test_what_cannot_be_fitted_is_skipped_with_its_reason(
+def test_a_model_that_cannot_be_fitted_is_skipped_with_its_reason(
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:
     for demo in some_demo_clips[:3]:
@@ -97,7 +97,7 @@ def test_what_cannot_be_fitted_is_skipped_with_its_reason(
         recognize.recognize(lib, RecognizeQuery(QuerySource(clip.id)))
 
 
-def test_a_stricter_false_accept_rate_takes_effect_at_once_and_outlives_a_fit(
+def test_a_lower_false_accept_rate_takes_effect_at_once_and_stays_after_a_fit(
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:
     for clip in some_demo_clips:
@@ -114,9 +114,9 @@ def test_a_stricter_false_accept_rate_takes_effect_at_once_and_outlives_a_fit(
     strict = lib.models.recognizer(lib.store).model.person_calibration
     assert strict.error_rates()[0] == 0.0
     assert strict.threshold <= threshold
-    told = active_errors(lib, changed)
-    assert told is not None
-    person = told["person"]
+    errors = active_errors(lib, changed)
+    assert errors is not None
+    person = errors["person"]
     assert (person.threshold, person.false_acceptance) == (strict.threshold, 0.0)
     assert person.false_rejection == strict.error_rates()[1]
     usual = changed.meta["figures"]["unknown"]["person"]
@@ -140,7 +140,7 @@ def test_a_stricter_false_accept_rate_takes_effect_at_once_and_outlives_a_fit(
 
 
 @pytest.mark.parametrize("method", sorted(set(METHODS) - {"default"}))
-def test_methods_that_need_persons_say_so_where_persons_are_not_recognized(
+def test_methods_that_need_persons_are_refused_if_recognizing_is_switched_off(
     ready_library: Library, clip_of: FindClip, method: str
 ) -> None:
     closed = replace(

@@ -1,4 +1,4 @@
-"""Words that the model would give a clip are suggested, and accepted in one call."""
+"""Words that the model predicts for a clip are suggested, and accepted in one call."""
 
 from __future__ import annotations
 
@@ -13,14 +13,16 @@ from app.services.training import models
 from tests.libraries import FindClip, upload, work
 
 
-def test_what_a_clip_carries_is_not_suggested(ready_library: Library, clip_of: FindClip) -> None:
+def test_words_that_a_clip_carries_are_not_suggested(
+    ready_library: Library, clip_of: FindClip
+) -> None:
     clip = clip_of("ada", "walk")
     found = suggestions.suggest(ready_library, clip.id, limit=100)
     assert not {word for word, _ in found} & set(clip.words)
     assert [score for _, score in found] == sorted((s for _, s in found), reverse=True)
 
 
-def test_a_clip_without_words_gets_those_of_its_like_and_the_next_fit_learns_them(
+def test_a_clip_without_words_gets_words_of_similar_clips_and_the_next_fit_learns_them(
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:
     *labelled, last = [clip for clip in some_demo_clips if clip.task in ("walk", "kick")]
@@ -58,7 +60,7 @@ def test_a_word_is_completed(ready_library: Library) -> None:
     assert len(suggestions.complete(ready_library, "", limit=2)) == 2
 
 
-def test_a_wrong_limit_is_told(ready_library: Library, clip_of: FindClip) -> None:
+def test_a_wrong_limit_is_refused(ready_library: Library, clip_of: FindClip) -> None:
     with pytest.raises(BadField):
         suggestions.suggest(ready_library, clip_of("ada", "walk").id, limit=0)
     with pytest.raises(BadField):

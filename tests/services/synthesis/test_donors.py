@@ -12,9 +12,9 @@ from app.services.synthesis.donors import detail_of
 from tests.bodies import motion_of, waving
 
 
-def fastest(wanted: FloatArray, take: FloatArray, take_shape: FloatArray) -> tuple[float, float]:
-    """Longest way of a joint role between two frames: the first two, and any others."""
-    course = course_of(wanted, 1.5, take=take, take_shape=take_shape)
+def fastest(target: FloatArray, take: FloatArray, take_shape: FloatArray) -> tuple[float, float]:
+    """Largest movement of a joint role between two frames: the first two, and any others."""
+    course = course_of(target, 1.5, take=take, take_shape=take_shape)
     steps = np.linalg.norm(np.diff(course.positions, axis=0), axis=-1).max(axis=1)
     return float(steps[:2].max()), float(steps[2:].max())
 
@@ -28,8 +28,8 @@ def test_a_take_that_begins_in_a_t_pose_is_followed_without_it(learned: str) -> 
     thrown = motion_of(np.concatenate([t_pose, wave]))
     shape = motion_shape(body_track(thrown)).astype(np.float64)
     others = motion_shape(body_track(motion_of(wave))).astype(np.float64)
-    wanted = shape if learned == "of such takes" else others
-    start, rest = fastest(wanted, *detail_of(thrown, shape, wanted))
+    target = shape if learned == "of such takes" else others
+    start, rest = fastest(target, *detail_of(thrown, shape, target))
     assert start < 1.2 * rest
     start, rest = fastest(shape, moments_of(body_track(thrown)), shape)
     assert start > 3 * rest  # as it was

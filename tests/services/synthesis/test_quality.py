@@ -1,4 +1,4 @@
-"""Which of the held-out figures are told of a motion."""
+"""The held-out figures that are reported for a motion."""
 
 from __future__ import annotations
 
@@ -50,18 +50,19 @@ def plan(kind: SynthesisKind, given: int, follows: str | None) -> Plan:
         (1, "n0", 0.25, 2, 4),  # nor has that of 1: of more is the nearest that is known
     ],
 )
-def test_it_is_that_of_motions_made_as_this_one(
+def test_the_expected_hit_is_that_of_motions_of_the_same_kind(
     given: int, follows: str | None, hit: float, of: int, trials: int
 ) -> None:
-    told = expected_of(FIGURES, plan(SynthesisKind.NEW_TASK, given, follows))
-    assert (told["hit"], told["given"], told["trials"], told["real"]) == (hit, of, trials, 0.9)
+    expected = expected_of(FIGURES, plan(SynthesisKind.NEW_TASK, given, follows))
+    names = ("hit", "given", "trials", "real")
+    assert [expected[name] for name in names] == [hit, of, trials, 0.9]
 
 
-def test_where_none_was_made_like_it_that_of_all_is_told() -> None:
-    told = expected_of(FIGURES, plan(SynthesisKind.NEW_PERSON, 3, "n0"))
-    assert (told["hit"], told["given"], told["trials"]) == (0.6, 3, 5)
+def test_without_motions_of_the_same_kind_the_expected_hit_is_that_of_all() -> None:
+    expected = expected_of(FIGURES, plan(SynthesisKind.NEW_PERSON, 3, "n0"))
+    assert (expected["hit"], expected["given"], expected["trials"]) == (0.6, 3, 5)
 
 
-def test_of_what_was_seen_nothing_is_expected() -> None:
+def test_a_recorded_task_has_no_expected_hit() -> None:
     assert expected_of(FIGURES, plan(SynthesisKind.SEEN, 1, None)) == {}
     assert expected_of({}, plan(SynthesisKind.NEW_TASK, 1, None)) == {}

@@ -1,4 +1,4 @@
-"""Motions that nobody recorded, of demo clips: what is made, told, stored and refused."""
+"""Syntheses from demo clips: the motion, its quality, its storage, and refused queries."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ LACKING = [("chika", "walk"), ("bruno", "wave"), ("bruno", "dance")]
 
 @pytest.fixture(scope="module")
 def fitted(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Library]:
-    """Nine clips; chika never walked, bruno never waved nor danced. Tests must not change it."""
+    """Nine clips; chika has no walk, bruno has no wave and no dance. Tests must not change it."""
     lib = Library.open(settings_for(tmp_path_factory.mktemp("made"), analysis_processes=2))
     for clip in demo_clips(ACTORS, TASKS, takes=1):
         if (clip.person, clip.task) not in LACKING:
@@ -70,7 +70,7 @@ def clip_of(lib: Library, person: str, task: str) -> ClipRecord:
     return next(c for c in found if (c.person, c.task) == (person, task))
 
 
-def test_a_known_person_does_what_they_never_did(fitted: Library) -> None:
+def test_a_known_person_gets_a_task_that_they_never_recorded(fitted: Library) -> None:
     made = synthesize(fitted, SynthesisQuery("walk", person="chika"))
     quality = made.quality
     assert quality.kind is SynthesisKind.NEW_TASK
@@ -89,7 +89,7 @@ def test_a_known_person_does_what_they_never_did(fitted: Library) -> None:
     assert max(travelled[0], travelled[2]) > 1.0
 
 
-def test_the_file_is_the_motion_on_the_persons_own_skeleton(fitted: Library) -> None:
+def test_the_bvh_file_has_the_motion_on_the_persons_own_skeleton(fitted: Library) -> None:
     made = synthesize(fitted, SynthesisQuery("walk", person="chika"))
     recording = read_recording(made.bvh)
     own = clip_of(fitted, "chika", "bow")
@@ -101,7 +101,7 @@ def test_the_file_is_the_motion_on_the_persons_own_skeleton(fitted: Library) -> 
     np.testing.assert_allclose(motion.positions, made.motion.positions, atol=2e-3)
 
 
-def test_a_made_walk_stands_on_the_floor_as_a_real_one_does(fitted: Library) -> None:
+def test_a_synthesized_walk_has_as_little_foot_skate_as_a_real_one(fitted: Library) -> None:
     made = synthesize(fitted, SynthesisQuery("walk", person="chika")).motion
     real = load_motion(fitted, clip_of(fitted, "ada", "walk"))
     lowest = made.positions[:, :, 1].min(axis=1)
@@ -121,7 +121,7 @@ def toe_speed(motion: Motion) -> float:
     return float(np.median(speeds[np.arange(len(toes)), lower]))
 
 
-def test_what_the_person_did_is_allowed_and_told(fitted: Library) -> None:
+def test_a_recorded_task_is_allowed_and_reported_as_seen(fitted: Library) -> None:
     made = synthesize(fitted, SynthesisQuery("wave", person="ada"))
     assert made.quality.kind is SynthesisKind.SEEN
     assert made.quality.expected_hit is None
@@ -129,7 +129,7 @@ def test_what_the_person_did_is_allowed_and_told(fitted: Library) -> None:
     assert made.cycles == 0
 
 
-def test_of_dances_that_do_not_agree_one_is_followed_and_it_says_so(fitted: Library) -> None:
+def test_if_dances_do_not_agree_one_is_followed_and_reported(fitted: Library) -> None:
     made = synthesize(fitted, SynthesisQuery("dance", person="bruno"))
     quality = made.quality
     assert quality.kind is SynthesisKind.NEW_TASK
@@ -153,7 +153,7 @@ def jumps(motion: Motion) -> float:
     return float(np.linalg.norm(bends, axis=-1).max() * ANALYSIS_RATE)
 
 
-def test_all_tasks_come_to_the_person_of_some_clips(fitted: Library) -> None:
+def test_the_person_of_some_clips_can_get_all_tasks(fitted: Library) -> None:
     ids = tuple(clip_of(fitted, "chika", task).id for task in ("bow", "dance", "wave"))
     made = synthesize(fitted, SynthesisQuery("walk", clip_ids=ids))
     assert made.quality.kind is SynthesisKind.NEW_PERSON
@@ -164,7 +164,7 @@ def test_all_tasks_come_to_the_person_of_some_clips(fitted: Library) -> None:
     np.testing.assert_allclose(made.motion.positions, known.motion.positions, atol=0.05)
 
 
-def test_clips_count_as_though_there_were_no_others_of_that_person(fitted: Library) -> None:
+def test_only_the_given_clips_of_the_person_are_used(fitted: Library) -> None:
     made = synthesize(fitted, SynthesisQuery("bow", clip_ids=(clip_of(fitted, "ada", "walk").id,)))
     assert made.quality.kind is SynthesisKind.NEW_PERSON
     assert made.quality.given_persons == ("bruno", "chika")
@@ -179,7 +179,7 @@ def test_a_clip_that_is_named_twice_counts_once(fitted: Library) -> None:
     assert once.quality == twice.quality
 
 
-def test_it_lasts_as_long_as_wished_and_is_the_same_each_time(fitted: Library) -> None:
+def test_a_synthesis_has_the_requested_duration_and_is_reproducible(fitted: Library) -> None:
     query = SynthesisQuery("walk", person="chika", seconds=7.0)
     made, again = synthesize(fitted, query), synthesize(fitted, query)
     assert made.motion.duration == pytest.approx(7.0, abs=0.8)
@@ -188,7 +188,7 @@ def test_it_lasts_as_long_as_wished_and_is_the_same_each_time(fitted: Library) -
     assert stretched.motion.duration == pytest.approx(3.0, abs=0.05)
 
 
-def test_a_stored_one_is_a_clip_from_which_nothing_is_learned(mine: Library) -> None:
+def test_a_stored_synthesis_is_a_clip_that_no_model_learns_from(mine: Library) -> None:
     query = SynthesisQuery("walk", person="chika", store=True)
     made = synthesize(mine, query)
     assert made.clip is not None
@@ -207,7 +207,7 @@ def test_a_stored_one_is_a_clip_from_which_nothing_is_learned(mine: Library) -> 
     assert synthesize(mine, query).quality.kind is SynthesisKind.NEW_TASK
 
 
-def test_what_cannot_be_made_is_refused_with_its_reason(fitted: Library) -> None:
+def test_an_impossible_synthesis_is_refused_with_its_reason(fitted: Library) -> None:
     with pytest.raises(NotFound, match=r"person 'nobody'.*ada"):
         synthesize(fitted, SynthesisQuery("walk", person="nobody"))
     with pytest.raises(NotFound, match="task 'fly'"):
@@ -243,7 +243,7 @@ def test_a_person_who_is_forgotten_is_in_no_synthesis(mine: Library) -> None:
     assert synthesize(mine, SynthesisQuery("wave", person="bruno")).person == "bruno"
 
 
-def test_nothing_is_made_where_persons_are_not_told_apart(mine: Library) -> None:
+def test_there_is_no_synthesis_if_recognizing_persons_is_switched_off(mine: Library) -> None:
     closed = replace(mine, settings=settings_for(Path("/nowhere"), recognize_persons=False))
     with pytest.raises(ModelNotFitted, match="KINEDEX_RECOGNIZE_PERSONS"):
         synthesize(closed, SynthesisQuery("walk", person="chika"))
@@ -252,7 +252,7 @@ def test_nothing_is_made_where_persons_are_not_told_apart(mine: Library) -> None
     assert "two persons" in outcome["reason"]
 
 
-def test_it_is_listed_with_its_held_out_figures(fitted: Library) -> None:
+def test_the_synthesis_model_is_listed_with_held_out_figures(fitted: Library) -> None:
     record = next(m for m in models.list_models(fitted) if m.kind == ModelKind.SYNTHESIS)
     rows = record.meta["figures"]["held_out"]
     assert {"new_task", "new_person"} == set(rows)
@@ -260,7 +260,7 @@ def test_it_is_listed_with_its_held_out_figures(fitted: Library) -> None:
     assert [row["given"] for row in rows["new_task"]] == [1, 2]
 
 
-def test_markers_lend_a_persons_proportions_to_the_body_for_all(fitted: Library) -> None:
+def test_clips_of_markers_give_a_persons_proportions_to_the_canonical_body(fitted: Library) -> None:
     clip = clip_of(fitted, "ada", "walk")
     motion = load_motion(fitted, clip)
     loose = replace(motion, parents=np.full(len(motion.names), -1))

@@ -1,4 +1,4 @@
-"""What is learned from and judged on: what people did, not what we made."""
+"""The training set has recordings of people and no synthesized clips."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from app.store.clips.listing import list_ids
 from tests.libraries import upload, work
 
 
-def test_nothing_is_judged_on_what_we_made(lib: Library, some_demo_clips: list[DemoClip]) -> None:
+def test_synthesized_clips_are_in_no_training_set(
+    lib: Library, some_demo_clips: list[DemoClip]
+) -> None:
     sources = ("studio", SYNTHESIZED, "field", None)
     ids = [
         upload(lib, clip, source=source).clip.id

@@ -1,4 +1,4 @@
-"""Ready clips as files: they read back as the same movement."""
+"""Ready clips exported as files: a reader gets the same movement from them."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def assert_same_places(content: bytes, format: str, motion: Motion, within: floa
 
 @pytest.mark.parametrize("format", ExportFormat)
 @pytest.mark.parametrize("task", ["walk", "kick"])
-def test_positions_come_back_within_a_tenth_of_a_millimetre(
+def test_exported_positions_are_within_a_tenth_of_a_millimeter(
     ready_library: Library, clip_of: FindClip, format: ExportFormat, task: str
 ) -> None:
     clip = clip_of("ada", task)
@@ -69,7 +69,7 @@ def test_positions_come_back_within_a_tenth_of_a_millimetre(
     assert_same_places(content, format, load_motion(ready_library, clip), TENTH_OF_MM)
 
 
-def test_a_bvh_that_is_imported_again_is_the_same_motion(
+def test_an_exported_bvh_can_be_uploaded_as_the_same_motion(
     ready_library: Library, clip_of: FindClip
 ) -> None:
     before = load_motion(ready_library, clip_of("bruno", "kick"))
@@ -81,7 +81,7 @@ def test_a_bvh_that_is_imported_again_is_the_same_motion(
         assert np.abs(after.positions - before.positions).max() < TENTH_OF_MM
 
 
-def test_rotations_are_the_files_own(
+def test_exported_rotations_are_those_of_the_file(
     ready_library: Library, clip_of: FindClip, some_demo_clips: list[DemoClip]
 ) -> None:
     clip = clip_of("ada", "wave")
@@ -98,7 +98,7 @@ def test_rotations_are_the_files_own(
 
 
 @pytest.mark.parametrize("format", ExportFormat)
-def test_any_rate_is_the_same_movement(
+def test_the_movement_is_the_same_at_any_frame_rate(
     ready_library: Library, clip_of: FindClip, format: ExportFormat
 ) -> None:
     clip = clip_of("chika", "bow")
@@ -136,19 +136,19 @@ def test_positions_without_rotations_are_solved(lib: Library) -> None:
     clip = clips.get_clip(lib, clip.id)
     assert clip.state is ClipState.READY
     for format in ExportFormat:
-        told = exported(lib, clip, format)
-        assert_same_places(told, format, load_motion(lib, clip), TENTH_OF_MM)
+        positions = exported(lib, clip, format)
+        assert_same_places(positions, format, load_motion(lib, clip), TENTH_OF_MM)
 
 
-def test_a_file_that_is_now_read_otherwise_is_exported_from_what_is_stored(
+def test_if_the_file_now_gives_other_positions_the_stored_ones_are_exported(
     lib: Library, some_demo_clips: list[DemoClip]
 ) -> None:
     clip = upload(lib, some_demo_clips[0]).clip
     work(lib.settings)
     clip = clips.get_clip(lib, clip.id)
     Path(clips.open_file(lib, clip.id).path).write_bytes(b"HIERARCHY\nno longer")
-    told = exported(lib, clip, "bvh")
-    assert_same_places(told, "bvh", load_motion(lib, clip), TENTH_OF_MM)
+    positions = exported(lib, clip, "bvh")
+    assert_same_places(positions, "bvh", load_motion(lib, clip), TENTH_OF_MM)
 
 
 @pytest.mark.parametrize(
@@ -161,11 +161,11 @@ def test_file_names_are_safe(
     clip = clip_of("chika", "wave")
     before = clips.update_clip(ready_library, clip.id, {"name": name})
     try:
-        told = export.export(ready_library, clip.id, "bvh").file_name
+        file_name = export.export(ready_library, clip.id, "bvh").file_name
     finally:
         clips.update_clip(ready_library, clip.id, {"name": clip.name})
     assert before.name == name
-    assert told == (expected or f"{clip.id}.bvh")
+    assert file_name == (expected or f"{clip.id}.bvh")
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Which frame rates can be asked for, and how much work for one call."""
+"""The limits of a requested frame rate, and of the work of one call."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from app.errors import BadField
 from app.services.library.library import Library
 from app.services.views import frame_rates
-from app.services.views.frame_rates import wanted_rate
+from app.services.views.frame_rates import requested_rate
 from app.store.clips.record import ClipRecord
 from tests.libraries import FindClip
 
@@ -22,11 +22,11 @@ def clip(ready_library: Library, clip_of: FindClip) -> ClipRecord:
 
 
 def rate(lib: Library, clip: ClipRecord, fps: float | None) -> float:
-    return wanted_rate(lib, clip, fps, source=120.0, joints=60)
+    return requested_rate(lib, clip, fps, source=120.0, joints=60)
 
 
 @pytest.mark.parametrize("fps", [1.0, 29.97, 120.0, 800.0])
-def test_rates_within_the_bounds_are_taken(
+def test_rates_within_the_bounds_are_accepted(
     ready_library: Library, clip: ClipRecord, fps: float
 ) -> None:
     assert rate(ready_library, clip, fps) == fps
@@ -38,7 +38,7 @@ def test_the_clips_own_rate_is_the_default_and_always_allowed(
     slow = replace(clip, frame_rate=0.5)
     assert rate(ready_library, clip, None) == 120.0
     for fps in (None, 0.5):
-        assert wanted_rate(ready_library, slow, fps, source=0.5, joints=512) == 0.5
+        assert requested_rate(ready_library, slow, fps, source=0.5, joints=512) == 0.5
 
 
 @pytest.mark.parametrize(
@@ -58,7 +58,7 @@ def test_too_many_frames_are_refused(ready_library: Library, clip: ClipRecord) -
 
 
 @pytest.mark.parametrize("fps", [60.0, 240.0])
-def test_too_much_work_is_refused_on_both_sides_of_the_filter(
+def test_too_many_positions_before_or_after_resampling_are_refused(
     ready_library: Library, clip: ClipRecord, fps: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     positions = 600 * 60 * max(fps, 120.0)

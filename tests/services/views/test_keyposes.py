@@ -1,4 +1,4 @@
-"""Keyposes of ready clips: found, named by people, and found better for what people named."""
+"""Keyposes of ready clips: found, annotated by people, and found with learned thresholds."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from app.services.library.library import Library
 from app.services.training.annotated import read_annotated
 from app.services.training.keypose_learning import examples_of, learn_keyposes
 from app.services.views import keyposes
-from app.services.views.keyposes import ThresholdSource, name_keyposes, view
+from app.services.views.keyposes import ThresholdSource, annotate_keyposes, view
 from app.store import models
 from app.store.clips import arrays, keypose_annotations
 from app.store.clips.record import ClipState
@@ -34,7 +34,7 @@ def dances() -> list[DemoClip]:
 
 @pytest.fixture(scope="module")
 def danced(tmp_path_factory: pytest.TempPathFactory, dances: list[DemoClip]) -> Iterator[Library]:
-    """Two dances, ready; tests take away again what they name."""
+    """Two ready dances. Each test removes its annotations at its end."""
     opened = Library.open(settings_for(tmp_path_factory.mktemp("danced")))
     for made in dances:
         clips.create_clip(opened, io.BytesIO(made.content), made.path, {"task": "dance"})
@@ -48,7 +48,7 @@ def ids(danced: Library) -> Iterator[list[str]]:
     found = [clip.id for clip in clips.list_clips(danced, sort="created_at").items]
     yield found
     for clip_id in found:
-        name_keyposes(danced, clip_id, ())
+        annotate_keyposes(danced, clip_id, ())
     with danced.store.write() as tx:
         models.remove(tx, ["keyposes"])
 
@@ -58,7 +58,7 @@ def stored(lib: Library, clip_id: str, name: str) -> np.ndarray:
         return arrays.get_one(tx, clip_id, name)
 
 
-def test_keyposes_come_with_their_poses(ready_library: Library, clip_of: FindClip) -> None:
+def test_keyposes_have_poses(ready_library: Library, clip_of: FindClip) -> None:
     found = view(ready_library, clip_of("ada", "kick").id)
     assert found.poses.shape == (len(found.found.frames), 13, 3)
     assert len(found.found.chosen_by) == len(found.found.frames) > 0
@@ -79,25 +79,25 @@ def test_a_wrong_field_is_named(
     assert refused.value.places[0].location == location
 
 
-def test_what_is_named_stands_beside_what_is_found_and_is_built_on(
+def test_annotated_keyposes_are_shown_beside_found_ones_and_are_used(
     danced: Library, ids: list[str]
 ) -> None:
     found = stored(danced, ids[0], "keypose_frames")
     segments = stored(danced, ids[0], "segment_spans")
-    assert name_keyposes(danced, ids[0], [2.0, 0.5, 2.0, 4.25]) == (0.5, 2.0, 4.25)
+    assert annotate_keyposes(danced, ids[0], [2.0, 0.5, 2.0, 4.25]) == (0.5, 2.0, 4.25)
     shown = view(danced, ids[0])
     assert shown.named == (0.5, 2.0, 4.25)
     assert shown.found.frames.tolist() == found.tolist()
     assert stored(danced, ids[0], "keypose_frames").tolist() == [15, 60, 128]
     assert stored(danced, ids[0], "segment_spans").tolist()[0] == [0.5, 2.0]
-    assert name_keyposes(danced, ids[0], ()) == ()
+    assert annotate_keyposes(danced, ids[0], ()) == ()
     assert view(danced, ids[0]).named is None
     assert stored(danced, ids[0], "keypose_frames").tolist() == found.tolist()
     np.testing.assert_array_equal(stored(danced, ids[0], "segment_spans"), segments)
 
 
-def test_what_is_named_outlives_another_analysis(danced: Library, ids: list[str]) -> None:
-    name_keyposes(danced, ids[0], [1.0, 3.0])
+def test_an_annotation_stays_after_another_analysis(danced: Library, ids: list[str]) -> None:
+    annotate_keyposes(danced, ids[0], [1.0, 3.0])
     clips.update_clip(danced, ids[0], {"frame_rate": 50.0})
     work(danced.settings)
     assert stored(danced, ids[0], "keypose_frames").tolist() == [30, 90]
@@ -110,7 +110,7 @@ def test_times_outside_the_clip_are_refused(
     danced: Library, ids: list[str], times: list[float]
 ) -> None:
     with pytest.raises(BadField) as refused:
-        name_keyposes(danced, ids[0], times)
+        annotate_keyposes(danced, ids[0], times)
     assert refused.value.places[0].location == "times"
     with danced.store.read() as tx:
         assert keypose_annotations.annotated(tx) == ()
@@ -120,17 +120,15 @@ def test_a_clip_may_be_annotated_before_it_is_analyzed(
     lib: Library, dances: list[DemoClip]
 ) -> None:
     queued = clips.create_clip(lib, io.BytesIO(dances[0].content), "a.bvh").clip
-    name_keyposes(lib, queued.id, [1.0])
+    annotate_keyposes(lib, queued.id, [1.0])
     work(lib.settings)
     assert clips.get_clip(lib, queued.id).state is ClipState.READY
     assert stored(lib, queued.id, "keypose_frames").tolist() == [30]
     with pytest.raises(ClipNotFound):
-        name_keyposes(lib, "clip_none", [1.0])
+        annotate_keyposes(lib, "clip_none", [1.0])
 
 
-def test_thresholds_are_given_or_learned_or_usual_and_say_so(
-    danced: Library, ids: list[str]
-) -> None:
+def test_thresholds_have_a_source_given_learned_or_default(danced: Library, ids: list[str]) -> None:
     usual = view(danced, ids[0]).thresholds
     assert (usual.t1_source, usual.t2_source) == (ThresholdSource.DEFAULT,) * 2
     arrays, meta = KeyposeThresholds({"rms": Thresholds(0.4, 1.5)}).to_arrays()
@@ -148,7 +146,7 @@ def test_thresholds_are_given_or_learned_or_usual_and_say_so(
     assert view(danced, ids[0], t1=1.0, t2=1.0).thresholds.model_version is None
 
 
-def test_learned_thresholds_count_in_new_analyzes(danced: Library, ids: list[str]) -> None:
+def test_new_analyses_use_learned_thresholds(danced: Library, ids: list[str]) -> None:
     before = stored(danced, ids[1], "keypose_frames")
     arrays, meta = KeyposeThresholds({"rms": Thresholds(1e-6, 99.0)}).to_arrays()
     with danced.store.write() as tx:
@@ -168,21 +166,21 @@ def test_learned_thresholds_count_in_new_analyzes(danced: Library, ids: list[str
 def test_figures_are_held_out_by_recording(
     danced: Library, ids: list[str], dances: list[DemoClip]
 ) -> None:
-    name_keyposes(danced, ids[0], dances[0].keyposes)
+    annotate_keyposes(danced, ids[0], dances[0].keyposes)
     _, alone = learn_keyposes(read_annotated(danced.store))
     assert alone["clips"] == 1
     assert "reason" in alone
     assert "learned" not in alone["methods"]["rms"]
-    name_keyposes(danced, ids[1], dances[1].keyposes)
+    annotate_keyposes(danced, ids[1], dances[1].keyposes)
     _, both = learn_keyposes(read_annotated(danced.store))
     assert both["methods"]["rms"]["learned"]["f"] > 0.85
     assert both["methods"]["rms"]["learned"]["true"] == sum(len(d.keyposes) for d in dances)
 
 
-def test_known_beats_count_in_what_is_found_learned_and_judged(
+def test_a_clips_beats_are_used_to_find_learn_and_judge_keyposes(
     danced: Library, ids: list[str], dances: list[DemoClip]
 ) -> None:
-    name_keyposes(danced, ids[0], dances[0].keyposes)
+    annotate_keyposes(danced, ids[0], dances[0].keyposes)
     (before,) = read_annotated(danced.store)
     clips.update_clip(danced, ids[0], {"beats": dances[0].beats})
     work(danced.settings)
@@ -210,11 +208,11 @@ def test_a_manifest_names_keyposes(lib: Library, tmp_path: Path, dances: list[De
         assert keypose_annotations.get(tx, by_name["a"]) == (1.0, 1.75, 2.5)
         assert keypose_annotations.get(tx, by_name["b"]) is None
     # The same files again change nothing of what was said since.
-    name_keyposes(lib, by_name["a"], [3.0])
+    annotate_keyposes(lib, by_name["a"], [3.0])
     import_path(lib, folder)
     with lib.store.read() as tx:
         assert keypose_annotations.get(tx, by_name["a"]) == (3.0,)
 
 
-def test_the_service_needs_no_model_for_any_of_it(danced: Library, ids: list[str]) -> None:
+def test_keyposes_need_no_fitted_model(danced: Library, ids: list[str]) -> None:
     assert keyposes.thresholds(danced).model_version is None

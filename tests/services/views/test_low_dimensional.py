@@ -1,4 +1,4 @@
-"""Clips of a library drawn from few dimensions, and as files."""
+"""Clips reduced to few dimensions: their motion, pictures and files."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def _rms(one: FloatArray, other: FloatArray) -> float:
 
 
 @pytest.mark.parametrize("basis", ["keypose", "uniform"])
-def test_what_is_shown_is_as_far_off_as_is_said(
+def test_the_reported_error_is_the_distance_to_the_original(
     ready_library: Library, clip_of: FindClip, basis: str
 ) -> None:
     clip = clip_of("ada", "wave")
@@ -39,13 +39,13 @@ def test_what_is_shown_is_as_far_off_as_is_said(
         assert found.motion.frame_rate == 30.0
         assert found.motion.joint_names == tuple(SUN_ROLES)
         assert found.motion.positions.dtype == np.float32
-        told = found.reduced.errors[dimensions - 1]
-        assert told == pytest.approx(_rms(found.motion.positions, original), abs=2e-4)
+        reported = found.reduced.errors[dimensions - 1]
+        assert reported == pytest.approx(_rms(found.motion.positions, original), abs=2e-4)
         assert found.eigen_motion.shape == (len(original), 3)
     assert found.reduced.model.poses == len(found.reduced.poses) == len(found.reduced.errors)
 
 
-def test_both_bases_have_as_many_poses_of_the_clip_itself(
+def test_both_bases_have_the_same_number_of_poses(
     ready_library: Library, clip_of: FindClip
 ) -> None:
     clip = clip_of("bruno", "wave")
@@ -59,9 +59,7 @@ def test_both_bases_have_as_many_poses_of_the_clip_itself(
     assert {pose.clip_id for pose in uniform.poses} == {clip.id}
 
 
-def test_several_clips_of_several_persons_make_one_model(
-    ready_library: Library, clip_of: FindClip
-) -> None:
+def test_clips_of_several_persons_make_one_model(ready_library: Library, clip_of: FindClip) -> None:
     clips = [clip_of(person, "wave") for person in ("ada", "bruno", "chika")]
     ids = [clip.id for clip in clips]
     alone = [view(ready_library, i, Reduction(2)).reduced for i in ids]
@@ -73,7 +71,7 @@ def test_several_clips_of_several_persons_make_one_model(
     assert others.errors[2] > view(ready_library, ids[0], Reduction(3)).reduced.errors[2]
 
 
-def test_uniform_poses_can_be_counted_where_there_are_no_keyposes(
+def test_a_clip_without_keyposes_can_have_uniform_poses(
     ready_library: Library, clip_of: FindClip, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     bow, wave = clip_of("ada", "bow"), clip_of("ada", "wave")
@@ -95,7 +93,7 @@ def test_uniform_poses_can_be_counted_where_there_are_no_keyposes(
     assert [pose.clip_id for pose in both.poses] == [wave.id] * 3
 
 
-def test_three_dimensions_or_fewer_are_taken_unasked(
+def test_by_default_there_are_three_dimensions_or_fewer(
     ready_library: Library, clip_of: FindClip
 ) -> None:
     assert view(ready_library, clip_of("ada", "wave").id, Reduction()).reduced.dimensions == 3
@@ -104,7 +102,7 @@ def test_three_dimensions_or_fewer_are_taken_unasked(
 
 
 @pytest.mark.parametrize(
-    ("wanted", "field", "message"),
+    ("reduction", "field", "message"),
     [
         (Reduction(0), "dimensions", "at least 1"),
         (Reduction(99), "dimensions", "from 1 to "),
@@ -114,16 +112,18 @@ def test_three_dimensions_or_fewer_are_taken_unasked(
         (Reduction(2, model_clips=["x"] * 51), "model_clips", "at most 50"),
     ],
 )
-def test_what_cannot_be_is_refused_by_field(
-    ready_library: Library, clip_of: FindClip, wanted: Reduction, field: str, message: str
+def test_an_impossible_reduction_is_refused_by_field(
+    ready_library: Library, clip_of: FindClip, reduction: Reduction, field: str, message: str
 ) -> None:
     clip = clip_of("ada", "wave")
     with pytest.raises(BadField, match=message) as caught:
-        view(ready_library, clip.id, wanted)
+        view(ready_library, clip.id, reduction)
     assert [place.location for place in caught.value.places] == [field]
 
 
-def test_the_poses_that_there_are_are_told(ready_library: Library, clip_of: FindClip) -> None:
+def test_too_many_dimensions_are_refused_with_the_number_of_poses(
+    ready_library: Library, clip_of: FindClip
+) -> None:
     clip = clip_of("ada", "wave")
     count = view(ready_library, clip.id, Reduction(1)).reduced.model.poses
     with pytest.raises(BadField, match=f"from 1 to {count}, the poses of the model"):
@@ -144,7 +144,7 @@ def test_model_clips_must_exist(ready_library: Library, clip_of: FindClip) -> No
         view(ready_library, clip_of("ada", "wave").id, Reduction(model_clips=["clip_none"]))
 
 
-def test_it_is_resampled_by_time(ready_library: Library, clip_of: FindClip) -> None:
+def test_a_reduced_motion_is_resampled_by_time(ready_library: Library, clip_of: FindClip) -> None:
     clip = clip_of("ada", "wave")
     slow = view(ready_library, clip.id, Reduction(), 10.0)
     usual = view(ready_library, clip.id, Reduction())
@@ -156,7 +156,7 @@ def test_it_is_resampled_by_time(ready_library: Library, clip_of: FindClip) -> N
 
 
 @pytest.mark.parametrize("format", ["bvh", "glb", "npz", "csv"])
-def test_files_hold_the_motion_that_is_shown(
+def test_exported_files_have_the_reduced_motion(
     ready_library: Library, clip_of: FindClip, format: str
 ) -> None:
     clip = clip_of("ada", "wave")
@@ -187,7 +187,7 @@ def test_bones_keep_their_length_on_the_canonical_body(
     assert np.ptp(np.linalg.norm(bone, axis=-1)) < 1e-4
 
 
-def test_clips_move_in_pictures_whole_reduced_and_in_part(
+def test_pictures_animate_whole_reduced_and_partial_clips(
     ready_library: Library, clip_of: FindClip
 ) -> None:
     clip = clip_of("ada", "wave")

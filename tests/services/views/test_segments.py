@@ -1,4 +1,4 @@
-"""A library's segments: listed from keypose to keypose, with the cycles that they form."""
+"""The segments of a clip, from keypose to keypose, and the cycles that they form."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from app.services.find.find import find_motion
 from app.services.find.queries import MotionQuery
 from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
-from app.services.views.keyposes import name_keyposes
+from app.services.views.keyposes import annotate_keyposes
 from app.services.views.segments import Segments, list_segments, segment_arrays
 from app.store.clips import arrays
 from app.store.clips.record import ClipRecord
@@ -66,7 +66,9 @@ def test_a_clip_without_stored_segments_has_the_same(
     np.testing.assert_array_equal(anew["segment_vectors"], stored["segment_vectors"])
 
 
-def test_who_holds_no_pose_has_no_segment(ready_library: Library, clip_of: FindClip) -> None:
+def test_a_clip_has_one_segment_less_than_keyposes(
+    ready_library: Library, clip_of: FindClip
+) -> None:
     for task in ("walk", "wave", "kick", "bow"):
         found = list_segments(ready_library, clip_of("ada", task).id)
         with ready_library.store.read() as tx:
@@ -79,16 +81,16 @@ def test_unknown_clips_are_not_found(lib: Library) -> None:
         list_segments(lib, "clip_none")
 
 
-def test_segments_follow_the_keyposes_that_a_person_names(
+def test_segments_change_with_annotated_keyposes(
     danced: tuple[Library, ClipRecord, CyclicDance],
 ) -> None:
     lib, clip, _ = danced
     found = list_segments(lib, clip.id)
-    name_keyposes(lib, clip.id, [0.5, 1.5, 4.0])
+    annotate_keyposes(lib, clip.id, [0.5, 1.5, 4.0])
     named = list_segments(lib, clip.id)
     assert [(one.start, one.end) for one in named.segments] == [(0.5, 1.5), (1.5, 4.0)]
     asked = MotionQuery(QuerySource(clip.id), segment=0, scope="segments", include_self=True)
     hits = find_motion(lib, asked).items
     assert [(hit.start, hit.end) for hit in hits] == [(0.5, 1.5), (1.5, 4.0)]
-    name_keyposes(lib, clip.id, [])
+    annotate_keyposes(lib, clip.id, [])
     assert list_segments(lib, clip.id) == found

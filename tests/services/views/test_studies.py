@@ -40,7 +40,7 @@ def _shown(lib: Library, clip: ClipRecord, basis: Basis, dimensions: int) -> Flo
     return low_dimensional.view(lib, clip.id, Reduction(dimensions, basis)).motion.positions
 
 
-def test_the_sides_are_the_two_versions_and_the_original_is_itself(
+def test_the_sides_show_the_two_reductions_and_the_original_motion(
     study: Library, clip: ClipRecord
 ) -> None:
     pair = studies.draw_pair(study, clip.id, 2)
@@ -52,7 +52,7 @@ def test_the_sides_are_the_two_versions_and_the_original_is_itself(
     np.testing.assert_allclose(view.positions, whole, atol=1e-6)
 
 
-def test_sides_are_drawn_by_lot_and_stay(study: Library, clip: ClipRecord) -> None:
+def test_sides_are_random_and_do_not_change(study: Library, clip: ClipRecord) -> None:
     pairs = [studies.draw_pair(study, clip.id) for _ in range(40)]
     lefts = [pair.left_basis for pair in pairs]
     assert 5 < lefts.count("keypose") < 35  # else once in ten million
@@ -61,7 +61,7 @@ def test_sides_are_drawn_by_lot_and_stay(study: Library, clip: ClipRecord) -> No
     assert again == lefts
 
 
-def test_what_is_voted_on_does_not_change_with_the_keyposes(
+def test_a_pair_does_not_change_with_the_keyposes(
     study: Library, clip: ClipRecord, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pair = studies.draw_pair(study, clip.id, 2)
@@ -75,7 +75,9 @@ def test_what_is_voted_on_does_not_change_with_the_keyposes(
     assert later.sequence != pair.sequence
 
 
-def test_the_picture_shows_three_and_tells_two_from_none(study: Library, clip: ClipRecord) -> None:
+def test_the_picture_shows_three_motions_and_does_not_reveal_the_bases(
+    study: Library, clip: ClipRecord
+) -> None:
     pair = studies.draw_pair(study, clip.id)
     picture = studies.animation(study, pair.id)
     assert [picture.index(f">{side}<") for side in ("left", "original", "right")] == sorted(
@@ -85,15 +87,15 @@ def test_the_picture_shows_three_and_tells_two_from_none(study: Library, clip: C
     assert "uniform" not in picture
 
 
-def test_votes_are_tallied_as_in_table_2(
+def test_votes_are_counted_as_in_table_2(
     study: Library, clip: ClipRecord, clip_of: FindClip
 ) -> None:
     other = clip_of("bruno", "wave")
     for one, keypose, uniform, same in ((clip, 8, 2, 1), (other, 3, 3, 0)):
         for number in range(keypose + uniform + same):
             pair = studies.draw_pair(study, one.id)
-            wanted = Basis.KEYPOSE if number < keypose else Basis.UNIFORM
-            choice = _side_of(pair, wanted).value if number < keypose + uniform else "same"
+            preferred = Basis.KEYPOSE if number < keypose else Basis.UNIFORM
+            choice = _side_of(pair, preferred).value if number < keypose + uniform else "same"
             studies.vote(study, pair.id, choice, f"voter {number}")
     found = studies.tally(study)
     rows = {row.clip_id: row.votes for row in found.sequences}
@@ -109,7 +111,7 @@ def test_votes_are_tallied_as_in_table_2(
     assert studies.tally(study, clip.id).total == rows[clip.id]
 
 
-def test_who_cannot_tell_says_nothing_of_either(study: Library, clip: ClipRecord) -> None:
+def test_a_vote_for_same_counts_for_neither_side(study: Library, clip: ClipRecord) -> None:
     pair = studies.draw_pair(study, clip.id)
     assert studies.tally(study).total.share is None
     studies.vote(study, pair.id, "same")
@@ -118,7 +120,9 @@ def test_who_cannot_tell_says_nothing_of_either(study: Library, clip: ClipRecord
     assert found.total.interval == (0.0, 1.0)
 
 
-def test_a_voter_has_one_vote_and_nobody_as_many_as_come(study: Library, clip: ClipRecord) -> None:
+def test_a_named_voter_has_one_vote_and_unnamed_votes_all_count(
+    study: Library, clip: ClipRecord
+) -> None:
     first, second = (studies.draw_pair(study, clip.id) for _ in range(2))
     studies.vote(study, first.id, "left", "someone")
     with pytest.raises(AlreadyVoted):
@@ -129,7 +133,7 @@ def test_a_voter_has_one_vote_and_nobody_as_many_as_come(study: Library, clip: C
     assert found.keypose + found.uniform == 4
 
 
-def test_what_cannot_be_compared_is_refused(
+def test_impossible_pairs_and_votes_are_refused(
     study: Library, clip: ClipRecord, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with pytest.raises(BadField, match="dimensions"):

@@ -1,4 +1,4 @@
-"""What can be seen of a ready clip."""
+"""The motion, the descriptors and the thumbnail of a ready clip."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tests.libraries import FindClip
 SVG = "{http://www.w3.org/2000/svg}"
 
 
-def test_the_motion_is_told_whole_or_by_roles_at_any_rate(
+def test_the_motion_has_all_joints_or_the_13_roles_at_any_rate(
     ready_library: Library, clip_of: FindClip
 ) -> None:
     clip = clip_of("ada", "walk")
@@ -37,7 +37,9 @@ def test_the_motion_is_told_whole_or_by_roles_at_any_rate(
     assert np.allclose(roles.positions[0, 4], whole.positions[0, hips], atol=0.02)
 
 
-def test_the_descriptor_is_what_searches_compare(ready_library: Library, clip_of: FindClip) -> None:
+def test_the_descriptor_has_the_arrays_that_searches_compare(
+    ready_library: Library, clip_of: FindClip
+) -> None:
     found = views.descriptor(ready_library, clip_of("ada", "walk").id)
     assert found.motion_vector.shape == (128,)
     assert found.msv_rho.shape == (13,)
@@ -48,14 +50,14 @@ def test_the_descriptor_is_what_searches_compare(ready_library: Library, clip_of
     assert found.analysis_version >= 1
 
 
-def test_a_clip_analyzed_before_convergence_was_kept_has_a_descriptor(
+def test_a_clip_without_stored_convergence_has_a_descriptor(
     ready_library: Library, clip_of: FindClip, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(views, "CONVERGENCE", "an array that no clip has")
     assert views.descriptor(ready_library, clip_of("ada", "walk").id).msv_convergence is None
 
 
-def test_the_picture_shows_a_few_figures_and_nothing_active(
+def test_the_thumbnail_shows_a_few_figures_and_has_no_script(
     ready_library: Library, clip_of: FindClip
 ) -> None:
     picture = ElementTree.fromstring(views.thumbnail_svg(ready_library, clip_of("ada", "walk").id))
@@ -69,7 +71,7 @@ def test_the_picture_shows_a_few_figures_and_nothing_active(
 
 
 @pytest.mark.parametrize("frames", [1, 2, 50])
-def test_any_motion_has_a_picture(frames: int) -> None:
+def test_any_motion_has_a_thumbnail(frames: int) -> None:
     still = np.zeros((frames, 13, 3), dtype=np.float32)
     ElementTree.fromstring(thumbnail(still, "<script>&\x00\ud800"))
 
@@ -92,7 +94,7 @@ def test_a_wrong_field_is_named(
 @pytest.mark.parametrize(
     "view", [views.motion, keyposes.view, views.descriptor, views.thumbnail_svg]
 )
-def test_only_ready_clips_can_be_seen(lib: Library, view: object) -> None:
+def test_only_ready_clips_have_views(lib: Library, view: object) -> None:
     queued = clips.create_clip(lib, io.BytesIO(b"HIERARCHY\n"), "a.bvh").clip
     with pytest.raises(ClipNotReady):
         view(lib, queued.id)  # type: ignore[operator]
