@@ -6,16 +6,39 @@ from pydantic import Field
 
 from app.api.schemas.base import Fps
 from app.api.schemas.low_dimensional import ReductionFields
-from app.services.views.export_format import ExportFormat, ExportSkeleton
+from app.services.views.export_format import (
+    ExportContent,
+    ExportFormat,
+    ExportJoints,
+    ExportSkeleton,
+    ExportUnit,
+)
 
 
 class ExportQuery(ReductionFields):
     """Format, frame rate and body of an exported clip, and from how many dimensions it is drawn."""
 
     format: ExportFormat = Field(
-        description="BVH (centimetres), GLB (glTF 2.0), NPZ (NumPy) or CSV; metres but for BVH."
+        description="BVH, GLB (glTF 2.0), NPZ (NumPy), CSV, C3D or TRC (OpenSim)."
     )
-    fps: Fps | None = Field(None, description="Resampled by time; default: the clip's own rate.")
+    content: ExportContent | None = Field(
+        None, description="The table of a CSV file, with format=csv only; default: positions."
+    )
+    unit: ExportUnit | None = Field(
+        None,
+        description="Of lengths; default: cm for BVH, mm for C3D and TRC, m for the others. GLB, "
+        "NPZ and tables other than positions are in m only.",
+    )
+    joints: ExportJoints = Field(
+        ExportJoints.ALL,
+        description="All joints by their own names, or those with a role, by role: with NPZ, C3D, "
+        "TRC and CSV positions.",
+    )
+    fps: Fps | None = Field(
+        None,
+        description="Resampled by time; default: the clip's own rate. Not with tables of segments "
+        "and gait.",
+    )
     skeleton: ExportSkeleton = Field(
         ExportSkeleton.OWN,
         description="The clip's own joints, or one body of 18 joints that all clips play on.",
