@@ -51,7 +51,11 @@ COMMANDS = {
         "fit",
         "Fit the models on the library as it is now, and show their held-out figures.",
     ),
-    "export": CommandPlace("app.cli.export", "export", "Export a clip as BVH, GLB, NPZ or CSV."),
+    "export": CommandPlace(
+        "app.cli.export",
+        "export",
+        "Export clips as BVH, GLB, NPZ, CSV, C3D (Z up) or TRC (for OpenSim).",
+    ),
     "backup": CommandPlace(
         "app.cli.backup",
         "backup",
