@@ -22,6 +22,7 @@ from app.analysis.angles.segment_frames import (
     turn_of_axes,
     unit,
 )
+from app.deadline import check
 from app.motion.roles.joint_roles import JointRole
 from app.motion.skeleton.animation import Animation
 from app.motion.skeleton.kinematics import joints_by_depth, rest_positions
@@ -91,6 +92,7 @@ def world_rotations(animation: Animation) -> FloatArray:
     """(n, joints, 4) the rotations of the joints in the world."""
     turns = np.array(animation.rotations, dtype=np.float64)
     for joints in joints_by_depth(animation.skeleton.parents)[1:]:
+        check()
         above = turns[:, animation.skeleton.parents[joints]]
         turns[:, joints] = multiply(above, turns[:, joints])
     return turns

@@ -168,8 +168,7 @@ def _is_run(walk: Walk, strike: float, next_strike: float) -> bool:
     """Whether the hips are high while the feet are apart. In a walk they are low then: they pass
     high over the standing leg."""
     times = np.linspace(strike, next_strike, SAMPLES)
-    left, right = (walk.at(walk.relative(walk.ankles[side]), times) for side in SIDES)
-    apart, height = np.abs(left - right), walk.at(walk.hips[:, 1], times)
+    apart, height = walk.apart(times), walk.at(walk.hips[:, 1], times)
     if np.ptp(height) < MIN_BOUNCE * walk.leg_length:
         return False
     return bool(np.corrcoef(apart, height)[0, 1] > MIN_CORRELATION)
@@ -194,6 +193,7 @@ def _no_gait(walk: Walk, events: Mapping[str, FootEvents]) -> NoGait:
     travel = float(np.ptp(walk.hips, axis=0).max()) if len(walk.hips) else 0.0
     message = (
         "expected at least one stride (two strikes of one foot, with a step of the other one "
-        f"between), found {counts}; the hips travel {travel:.1f} m"
+        f"between, {MIN_STRIDE_LENGTH * walk.leg_length:.2f} m apart or more, and the foot stands "
+        f"while the hips pass over it), found {counts}; the hips travel {travel:.1f} m"
     )
     return NoGait(f"The clip has no walking: {message}.", places=[Place("clip_id", message)])

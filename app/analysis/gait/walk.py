@@ -54,8 +54,19 @@ class Walk:
 
     def at(self, values: FloatArray, times: FloatArray) -> FloatArray:
         """(k,) `values` (n,) at `times` (k,), seconds of the clip."""
-        frames = (np.asarray(times) - self.start) * self.rate
-        return np.asarray(np.interp(frames, np.arange(len(values)), values))
+        last = len(values) - 1
+        frames = np.clip((np.asarray(times) - self.start) * self.rate, 0, last)
+        before = np.minimum(frames.astype(np.int64), max(last - 1, 0))
+        share = frames - before
+        return np.asarray(
+            (1 - share) * values[before] + share * values[np.minimum(before + 1, last)]
+        )
+
+    def apart(self, times: FloatArray) -> FloatArray:
+        """(k,) meters between the ankles along the progress at `times` (k,), 0 or more."""
+        left, right = (self.on_floor(self.ankles[side], times) for side in SIDES)
+        ahead = np.stack([self.at(self.progress[:, axis], times) for axis in (0, 1)], axis=-1)
+        return np.asarray(np.abs(np.sum((left - right) * ahead, axis=-1)))
 
 
 def walk_of(motion: Motion) -> Walk:
