@@ -30,7 +30,7 @@ def angles_of(motion: Motion, animation: Animation | None) -> JointAngles:
     has none.
     """
     if animation is None:
-        segments = frames_of_positions(motion.positions, motion.names, motion.roles)
+        segments = frames_of_positions(motion)
     else:
         segments = frames_of_rotations(animation, motion.roles)
     degrees = clinical_angles(segments, motion.frames)

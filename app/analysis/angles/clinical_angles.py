@@ -77,18 +77,16 @@ def _leg(segments: SegmentFrames, side: str) -> _Columns:
     found: _Columns = {}
     for near, far, names, sign in _JOINTS:
         near_name = near if near == "pelvis" else f"{side}_{near}"
+        flexion, adduction, rotation = (f"{side}_{name}_deg" for name in names)
         angles = _joint(segments, near_name, f"{side}_{far}", _inward(side))
-        if angles is None and far == "shank":
-            bend = _bend(segments, near_name, f"{side}_{far}")
-            if bend is not None:
-                found[f"{side}_{names[0]}_deg"] = bend
         if angles is not None:
-            flexion, adduction, rotation = angles
-            found |= {
-                f"{side}_{names[0]}_deg": sign * flexion,
-                f"{side}_{names[1]}_deg": adduction,
-                f"{side}_{names[2]}_deg": rotation,
-            }
+            found[flexion] = sign * angles[0]
+            # heel and toe do not show whether the sole leans
+            if far != "foot" or f"{side}_foot" in segments.turns:
+                found |= {adduction: angles[1], rotation: angles[2]}
+        elif far == "shank":
+            bend = _bend(segments, near_name, f"{side}_{far}")
+            found |= {} if bend is None else {flexion: bend}
     return found
 
 

@@ -87,8 +87,10 @@ of elevation and elevation, Z-X-Y for flexion and adduction. Angles are not filt
   upright frame of the clip, a foot while it is flat on the floor; knees and elbows bend about the
   mean axis that the motion shows.
 - `positions`: the file has no rotations. Only angles that positions determine are there: knee and
-  elbow flexion (0 or more), thorax, and where the arm points; with pelvis markers (ASIS, PSIS or
-  sacrum) also pelvis, trunk, and hip flexion and adduction. Other columns are empty.
+  elbow flexion (0 or more), thorax, and where the arm points. Markers give more: ASIS with PSIS or
+  sacrum the pelvis, the trunk, hip flexion and adduction; both sides of the knee hip rotation and
+  the sign of knee flexion; those of the ankle too knee adduction and rotation, and with heel and
+  toe ankle dorsiflexion. Other columns are empty.
 
 {angles.explained()}
 

@@ -11,12 +11,13 @@ from hypothesis import strategies as st
 
 from app.analysis.angles.angles import JointAngles, angles_of
 from app.analysis.angles.definitions import ANGLE_NAMES, explained
+from app.analysis.angles.neutral_pose import world_rotations
 from app.analysis.angles.segment_frames import Neutral
 from app.motion.roles.joint_roles import JointRole
 from app.motion.skeleton.animation import Animation
-from app.motion.skeleton.rotations import euler_to_quaternions
+from app.motion.skeleton.rotations import euler_to_quaternions, rotate
 from app.numerics.arrays import FloatArray
-from tests.analysis.angles.bodies import body, cardan, motion_of, with_other_axes
+from tests.analysis.angles.bodies import ROLES, body, cardan, motion_of, with_other_axes
 
 R = JointRole
 FLEXION = np.array([0.0, 30.0, -20.0, 60.0])
@@ -200,3 +201,43 @@ def test_every_angle_is_explained() -> None:
     told = explained()
     for name in ANGLE_NAMES:
         assert name.removeprefix("left_").removeprefix("right_") in told
+
+
+def test_markers_on_both_sides_of_a_joint_give_its_three_angles() -> None:
+    turns = {}
+    for side, inward in (("left", -1), ("right", 1)):
+        turns[R(f"{side}_upper_leg")] = cardan(FLEXION, inward * ASIDE, inward * TURN)
+        turns[R(f"{side}_knee")] = cardan(-np.abs(FLEXION), inward * ASIDE / 5, inward * TURN)
+        turns[R(f"{side}_foot")] = cardan(FLEXION / 3, NOTHING, NOTHING)
+    animation = body(4, turns)
+    motion, expected = motion_of(animation), angles(animation)
+    tracks = {"LASI": (R.HIPS, R.HIPS, (0.12, 0, 0.1)), "RASI": (R.HIPS, R.HIPS, (-0.12, 0, 0.1)),
+              "SACR": (R.HIPS, R.HIPS, (0, 0, -0.1))}  # fmt: skip
+    for side, out in (("left", 0.05), ("right", -0.05)):
+        thigh, shank, foot = (R(f"{side}_{part}") for part in ("upper_leg", "knee", "foot"))
+        for name, segment, joint, offset in (
+            ("KNE", thigh, shank, (out, 0, 0)), ("KNM", thigh, shank, (-out, 0, 0)),
+            ("ANK", shank, foot, (out, 0, 0)), ("ANM", shank, foot, (-out, 0, 0)),
+            ("HEE", foot, foot, (0, -0.06, -0.05)), ("TOE", foot, foot, (0, -0.06, 0.15)),
+        ):  # fmt: skip
+            tracks[f"{side[0].upper()}{name}"] = (segment, joint, offset)
+    world = world_rotations(animation)
+    added = [
+        motion.positions[:, ROLES[joint]] + rotate(world[:, ROLES[segment]], np.array(offset))
+        for segment, joint, offset in tracks.values()
+    ]
+    marked = replace(
+        motion,
+        names=(*motion.names, *tracks),
+        parents=np.append(motion.parents, [-1] * len(tracks)),
+        positions=np.concatenate(
+            [motion.positions, np.stack(added, axis=1)], axis=1, dtype=np.float32
+        ),
+    )
+    found = angles_of(marked, None)
+    for name in ANGLE_NAMES:
+        if any(part in name for part in ("pelvis", "hip", "knee", "ankle_dorsi")):
+            np.testing.assert_allclose(
+                column(found, name), column(expected, name), atol=0.01, err_msg=name
+            )
+    assert np.isnan(column(found, "left_ankle_inversion_deg")).all()
