@@ -160,6 +160,9 @@ def _neutral_turns(pose: _Pose, roles: _Roles, neutral: Neutral) -> dict[str, Fl
     spine = pose.places[roles[_R.NECK]] - pose.places[roles[_R.HIPS]]
     found = {"pelvis": body, "thorax": body, "left_foot": body, "right_foot": body}
     if neutral is Neutral.UPRIGHT_POSE:
+        # the pelvis may lean to a side in that frame: level is the line of the hips
+        right = unit(_right(pose.places, roles))
+        found["pelvis"] = turn_of_axes(_UP - (_UP @ right) * right, right)
         found["thorax"] = turn_of_axes(spine, _right(pose.places, roles, _SHOULDERS))
     for name, (near, far) in LIMBS.items():
         if near in roles and far in roles:

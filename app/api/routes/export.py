@@ -46,7 +46,7 @@ The clip as an attachment. Positions come back within 0.1 mm. Y is up but for C3
 clip's: bones point where the clip's do, and feet that stand stay on the floor.
 
 `joints=roles` leaves only the joints of which the role is known, and calls them by role, so that
-columns and labels are the same for all clips.
+columns and labels are the same for all clips; so a C3D file can always be imported again.
 
 `dimensions` draws the motion from few dimensions (see `/low-dimensional`), on the 13 joint
 roles and by default at 30 frames a second. Rotations are solved; bones change their length a
@@ -82,10 +82,12 @@ of elevation and elevation, Z-X-Y for flexion and adduction. Angles are not filt
 `neutral_pose` says which pose has angles of zero:
 
 - `rest_pose`: that of the file (all rotations 0), a person who stands, as a T-pose. Long axes
-  of limbs are the lines between joint centers, so a bent limb is bent.
-- `upright_pose`: the file's rest pose is no standing person. The pelvis is neutral in the most
-  upright frame of the clip, a foot while it is flat on the floor; knees and elbows bend about the
-  mean axis that the motion shows.
+  of limbs are the lines between joint centers, so a bent limb is bent; a sole is at a right angle
+  to the shank from side to side.
+- `upright_pose`: the file's rest pose is no standing person. The pelvis has no tilt in the most
+  upright frame of the clip, and no obliquity where the hip joints are level; the thorax leans as
+  the line from hips to neck; a foot is neutral while it is flat on the floor; knees and elbows
+  bend about the mean axis that the motion shows.
 - `positions`: the file has no rotations. Only angles that positions determine are there: knee and
   elbow flexion (0 or more), thorax, and where the arm points. Markers give more: ASIS with PSIS or
   sacrum the pelvis, the trunk, hip flexion and adduction; both sides of the knee hip rotation and

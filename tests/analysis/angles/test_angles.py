@@ -137,6 +137,7 @@ def test_a_rest_pose_that_is_no_person_is_replaced_by_the_most_upright_frame() -
     sway = np.sin(np.linspace(0, 6, 80))
     bend = np.abs(sway)
     turns = {
+        R.HIPS: cardan(0 * bend, 4 + sway, 0 * bend),
         R.LEFT_UPPER_LEG: cardan(30 * bend, 4 * sway, 0 * bend),
         R.LEFT_KNEE: cardan(-60 * bend, 0 * bend, 0 * bend),
         R.RIGHT_KNEE: cardan(-50 * bend, 0 * bend, 0 * bend),
