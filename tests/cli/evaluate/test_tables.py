@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from pathlib import Path
 
@@ -15,12 +13,9 @@ from app.cli.evaluate.confusion_table import print_confusion
 from app.cli.evaluate.tables import check_csv, keep_table, report, show_table
 from app.errors import BadField
 from tests.cli.conftest import Kinedex
+from tests.formats.csv.files import rows_of
 
 TASKS = ("--filter", '{"task": ["walk", "wave"]}')
-
-
-def rows_of(file: Path) -> list[dict[str, str]]:
-    return list(csv.DictReader(io.StringIO(file.read_text(), newline="")))
 
 
 def print_some() -> None:
