@@ -196,4 +196,6 @@ def _no_gait(walk: Walk, events: Mapping[str, FootEvents]) -> NoGait:
         f"between, {MIN_STRIDE_LENGTH * walk.leg_length:.2f} m apart or more, and the foot stands "
         f"while the hips pass over it), found {counts}; the hips travel {travel:.1f} m"
     )
-    return NoGait(f"The clip has no walking: {message}.", places=[Place("clip_id", message)])
+    return NoGait(
+        f"The clip has no walking: {message}.", places=[Place("clip_id", "has no walking")]
+    )
