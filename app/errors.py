@@ -133,6 +133,12 @@ class TooShort(BadContent):
     code = "too_short"
 
 
+class NoGait(BadContent):
+    """The motion holds no walking that can be measured."""
+
+    code = "no_gait"
+
+
 class TooLarge(KinedexError):
     """The content is larger than the limit."""
 

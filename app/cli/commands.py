@@ -57,7 +57,11 @@ COMMANDS = {
         "fit",
         "Fit the models on the current library, and show their held-out figures.",
     ),
-    "export": CommandEntry("app.cli.export", "export", "Export a clip as BVH, GLB, NPZ or CSV."),
+    "export": CommandEntry(
+        "app.cli.export",
+        "export",
+        "Export clips as BVH, GLB, NPZ, CSV, C3D (Z up) or TRC (for OpenSim).",
+    ),
     "backup": CommandEntry(
         "app.cli.backup",
         "backup",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 from typing import Any
 from urllib.parse import unquote
 
@@ -9,6 +11,7 @@ import httpx2
 import numpy as np
 import pytest
 
+from app.formats.c3d.points import read_points
 from app.formats.read import read_recording
 from tests.api.conftest import assert_problem
 from tests.formats.gltf.files import Glb
@@ -19,6 +22,8 @@ TYPES = {
     "glb": "model/gltf-binary",
     "npz": "application/zip",
     "csv": "text/csv; charset=utf-8",
+    "c3d": "application/octet-stream",
+    "trc": "text/tab-separated-values; charset=utf-8",
 }
 
 
@@ -36,10 +41,52 @@ def test_each_format_is_an_attachment(
     if format in ("bvh", "npz"):
         recording = read_recording(answer.content)
         assert recording.positions.shape == (walk["frames"], walk["joints"], 3)
+    elif format == "c3d":
+        points = read_points(answer.content)
+        assert points.positions.shape == (walk["frames"], walk["joints"], 3)
     elif format == "glb":
         assert len(Glb(answer.content).times()) == walk["frames"]
     else:
-        assert answer.text.count("\n") == walk["frames"] + 1
+        head = 6 if format == "trc" else 1
+        assert answer.text.count("\n") == walk["frames"] + head
+
+
+@pytest.mark.parametrize(
+    ("content", "column"),
+    [
+        ("positions", "time_s"),
+        ("angles", "left_knee_flexion_deg"),
+        ("segments", "duration_s"),
+        ("gait", "symmetry_index_pct"),
+        ("strides", "stride_length_m"),
+        ("cycles", "knee_flexion_deg_mean"),
+    ],
+)
+def test_each_table_is_a_csv_file(
+    demo: httpx2.Client, walk: dict[str, Any], content: str, column: str
+) -> None:
+    params = {"format": "csv", "content": content}
+    answer = demo.get(f"/v1/clips/{walk['id']}/export", params=params)
+    assert answer.status_code == 200, answer.text
+    head, *rows = csv.reader(io.StringIO(answer.text, newline=""))
+    assert column in head
+    assert rows
+    assert {len(row) for row in rows} == {len(head)}
+
+
+def test_a_clip_without_walking_has_no_gait(demo: httpx2.Client) -> None:
+    (wave, *_) = demo.get("/v1/clips", params={"task": "wave"}).json()["items"]
+    params = {"format": "csv", "content": "gait"}
+    answer = demo.get(f"/v1/clips/{wave['id']}/export", params=params)
+    assert_problem(answer, 422, "no_gait", "clip_id")
+    assert "expected at least one stride" in answer.json()["detail"]
+
+
+def test_every_column_is_described(demo: httpx2.Client) -> None:
+    paths = demo.get("/openapi.json").json()["paths"]
+    description = paths["/v1/clips/{clip_id}/export"]["get"]["description"]
+    for name in ("hip_flexion_deg", "pelvis_obliquity_deg", "step_width_m", "cycle_pct"):
+        assert name in description
 
 
 def test_an_exported_file_can_be_uploaded(
@@ -80,6 +127,10 @@ def test_a_name_with_anything_in_it_does_no_harm(demo: httpx2.Client, walk: dict
         ({"format": "bvh", "fps": "1001"}, "query.fps"),
         ({"format": "bvh", "skeleton": "mine"}, "query.skeleton"),
         ({"format": "bvh", "colour": "red"}, "query.colour"),
+        ({"format": "bvh", "content": "angles"}, "query.content"),
+        ({"format": "csv", "content": "forces"}, "query.content"),
+        ({"format": "csv", "content": "gait", "fps": "30"}, "query.fps"),
+        ({"format": "glb", "unit": "cm"}, "query.unit"),
     ],
 )
 def test_wrong_fields_are_named(

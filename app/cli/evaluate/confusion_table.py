@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import typer
 
+from app.cli.evaluate.tables import keep_table
 from app.cli.output import MAX_WIDTH, print_table
 from app.evaluate import charts as pictures
 from app.numerics.arrays import FloatArray
@@ -17,12 +18,15 @@ MIN_SHARE = 0.005
 """The smallest share that is printed: it rounds to one percent."""
 
 
-def print_confusion(classes: Sequence[str], shares: FloatArray) -> None:
-    """Print `shares` (C, C), 0..1, in percent. Each row is a true class, each column an answer.
+def print_confusion(classes: Sequence[str], shares: FloatArray, table: str = "confusion") -> None:
+    """Print `shares` (C, C), 0..1, in percent; a row is a true class, columns have its number.
 
-    The columns have the numbers of the classes. If the table would be wider than MAX_WIDTH, the
-    most frequent confusions are printed instead.
+    If the table would be wider than MAX_WIDTH, print the most frequent confusions instead. All
+    shares go to the CSV file, as the table of that name.
     """
+    every = np.ndindex(*shares.shape)
+    rows = [[classes[true], classes[taken], shares[true, taken]] for true, taken in every]
+    keep_table(table, ["true", "taken for", "share"], rows)
     names = [f"{number:>2} {pictures.shown(name)}" for number, name in enumerate(classes, 1)]
     width = max(map(len, names), default=0)
     if width + 4 * len(names) > MAX_WIDTH:
@@ -48,7 +52,7 @@ def _print_largest(classes: Sequence[str], shares: FloatArray) -> None:
         typer.echo("")
     typer.echo(
         f"{len(classes)} classes, {_count_text(len(shown), len(confusions))};"
-        " --json and --pictures have the whole matrix."
+        " --json, --csv and --pictures have the whole matrix."
     )
 
 

@@ -42,7 +42,7 @@ class Drawing:
         folder_format = pictures.format_of(Path(f"picture.{picture_format}"))
         if file is not None:
             pictures.format_of(file)
-            _check_file(file)
+            check_file("picture", file)
         if folder is not None:
             _check_folder("pictures", folder)
         if file is not None or folder is not None:
@@ -63,14 +63,15 @@ class Drawing:
                 write_whole(self.folder / name, [content])
 
 
-def _check_file(file: Path) -> None:
-    _check_folder("picture", file.parent)
+def check_file(option: str, file: Path) -> None:
+    """Check that the file of an option can be written. Raises BadField."""
+    _check_folder(option, file.parent)
     try:
         is_folder = file.is_dir()
     except OSError as problem:  # a name that is too long
-        raise _unwritable("picture", file, problem) from None
+        raise _unwritable(option, file, problem) from None
     if is_folder:
-        raise fields.bad_field("picture", f"{file} is a folder, not a file")
+        raise fields.bad_field(option, f"{file} is a folder, not a file")
 
 
 def _check_folder(option: str, folder: Path) -> None:

@@ -12,8 +12,9 @@ import typer
 from app import evaluate
 from app.cli.evaluate.drawing import Drawing
 from app.cli.evaluate.running import parsed_filter
+from app.cli.evaluate.tables import CsvFile, check_csv, keep_table, report, show_table
 from app.cli.options import FilterJson, PictureFormat
-from app.cli.output import AsJson, print_json, print_table, progress_bar
+from app.cli.output import AsJson, progress_bar
 from app.cli.settings import open_library
 from app.evaluate import KeyposeEvaluation
 from app.evaluate import charts as pictures
@@ -49,9 +50,11 @@ def keyposes(
     picture: Picture = None,
     pictures_dir: Pictures = None,
     picture_format: PictureFormat = "svg",
+    csv_file: CsvFile = None,
     as_json: AsJson = False,
 ) -> None:
-    """Compare found keyposes with annotated ones (Perera 2009, table 1, figs 3 to 6)."""
+    """Keyposes found against those that people named (Perera 2009, table 1, figs 3 to 6)."""
+    check_csv(csv_file)
     filter = parsed_filter(filter_json)
     drawing = Drawing.prepared(picture, pictures_dir, picture_format)
     with open_library(context) as lib:
@@ -62,10 +65,7 @@ def keyposes(
             if not evaluate.is_any_annotated(lib, filter):
                 return  # only the pictures were possible
         found = evaluate.judge_keyposes(lib, filter, tolerance)
-    if as_json:
-        print_json(_document(found))
-    else:
-        _print(found)
+    report(lambda: _document(found), lambda: _print(found), as_json=as_json, csv_file=csv_file)
     drawing.draw_one(lambda form: keypose_pictures.threshold_figure(found, form))
 
 
@@ -121,7 +121,8 @@ def _print(found: KeyposeEvaluation) -> None:
     typer.echo(
         f"Keyposes of {len(found.clips)} clips, correct within {found.tolerance:g} s (table 1):\n"
     )
-    print_table(
+    show_table(
+        "clips",
         ["clip", "true", *(f"{what} {m[0]}" for m in methods for what in ("found", "right"))],
         [
             [clip.name, clip.true]
@@ -130,7 +131,8 @@ def _print(found: KeyposeEvaluation) -> None:
         ],
     )
     typer.echo("\n" + ", ".join(f"{method[0]}: {method}" for method in methods) + ".\n")
-    print_table(
+    show_table(
+        "methods",
         ["method", "thresholds", "T1", "T2", "found", "right", "precision", "recall", "F"],
         [row for judged in found.methods for row in _rows(judged, found.recordings)],
     )
@@ -156,6 +158,9 @@ def _rows(judged: evaluate.JudgedKeyposes, recordings: int) -> list[list[object]
 
 def _print_curve(title: str, name: str, curve: ThresholdCurve) -> None:
     """Precision and recall in percent, so that eleven values fit into 80 columns."""
+    kept = zip(curve.values, curve.precision, curve.recall, strict=True)
+    columns = ["curve", name, "precision", "recall"]
+    keep_table(f"over_{name.lower()}", columns, [[title, *row] for row in kept])
     typer.echo(title)
     for label, values, form in (
         (name, curve.values, "{:5.2g}"),

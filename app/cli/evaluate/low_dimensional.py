@@ -11,8 +11,9 @@ from app import evaluate
 from app.analysis.low_dimensional.eigen_motion import Basis
 from app.cli.evaluate.drawing import Drawing
 from app.cli.evaluate.running import judging, parsed_filter
+from app.cli.evaluate.tables import CsvFile, check_csv, report, show_table
 from app.cli.options import FilterJson, PictureFormat
-from app.cli.output import AsJson, print_json, print_table
+from app.cli.output import AsJson
 from app.evaluate import LowDimensionalEvaluation
 from app.evaluate.low_dimensional import pictures as low_dimensional_pictures
 
@@ -26,17 +27,16 @@ def low_dimensional(
     filter_json: FilterJson = None,
     pictures_dir: Pictures = None,
     picture_format: PictureFormat = "svg",
+    csv_file: CsvFile = None,
     as_json: AsJson = False,
 ) -> None:
-    """Compare keyposes with uniform poses as basis of low-dimensional motion (Perera 2009)."""
+    """Motions drawn from few dimensions of keyposes, and of uniform poses (Perera 2009)."""
+    check_csv(csv_file)
     filter = parsed_filter(filter_json)
     drawing = Drawing.prepared(folder=pictures_dir, picture_format=picture_format)
     with judging(context, "reducing") as (lib, progress):
         found = evaluate.judge_low_dimensional(lib, filter, progress)
-    if as_json:
-        print_json(_document(found))
-    else:
-        _print(found)
+    report(lambda: _document(found), lambda: _print(found), as_json=as_json, csv_file=csv_file)
     drawing.draw_all(lambda form: low_dimensional_pictures.all_figures(found, form).items())
 
 
@@ -87,7 +87,8 @@ def _print(found: LowDimensionalEvaluation) -> None:
         f"{found.clips} clips, each reduced by its own keyposes (k), or as many uniform poses (u);"
         f"\n{found.left_out} others have too few keyposes.\n"
     )
-    print_table(
+    show_table(
+        "dimensions",
         ["K'", "clips", "kept k", "kept u", "mm k", "mm u", "mm least", "k better"],
         [
             [row.dimensions, row.clips, row.variance[key], row.variance[uniform], row.error[key],
@@ -100,7 +101,8 @@ def _print(found: LowDimensionalEvaluation) -> None:
         "motion;\nleast: by the axes of all frames; k better: share of clips.\n"
     )
     faults = list(found.poses[0].faults)
-    print_table(
+    show_table(
+        "poses",
         ["basis", "frames", "faulty", *(f.replace("_", " ") for f in faults), "clusters"],
         [
             [row.name, row.frames, row.implausible, *(row.faults[f] for f in faults),
@@ -120,7 +122,8 @@ def _print(found: LowDimensionalEvaluation) -> None:
 def _print_groups(found: LowDimensionalEvaluation) -> None:
     key, uniform = (basis.value for basis in Basis)
     typer.echo("Several persons in one model, a clip of each, 3 dimensions (section 4.2):\n")
-    print_table(
+    show_table(
+        "groups",
         ["task", "who", "K", "kept k", "kept u", "mm k", "mm u", "gap k", "gap u"],
         [
             [row.task, row.persons, row.poses, row.variance[key], row.variance[uniform],

@@ -12,8 +12,9 @@ from app.cli.evaluate.drawing import Drawing
 from app.cli.evaluate.recognition_document import document
 from app.cli.evaluate.recognition_tables import print_tables
 from app.cli.evaluate.running import judging, parsed_filter
+from app.cli.evaluate.tables import CsvFile, check_csv, report
 from app.cli.options import FilterJson, PictureFormat
-from app.cli.output import AsJson, print_json
+from app.cli.output import AsJson
 from app.evaluate.recognition import pictures as recognition_pictures
 
 Methods = Annotated[
@@ -45,9 +46,11 @@ def recognition(
     filter_json: FilterJson = None,
     pictures_dir: Pictures = None,
     picture_format: PictureFormat = "svg",
+    csv_file: CsvFile = None,
     as_json: AsJson = False,
 ) -> None:
-    """Recognize held-out takes, persons, tasks and sources (Vasilescu; Perera, section 5)."""
+    """Person and task, held out by take, person, task and source (Vasilescu; Perera, 5)."""
+    check_csv(csv_file)
     filter = parsed_filter(filter_json)
     drawing = Drawing.prepared(folder=pictures_dir, picture_format=picture_format)
     with judging(context, "recognizing") as (lib, progress):
@@ -58,8 +61,5 @@ def recognition(
             false_accept_rate=false_accept_rate,
             progress=progress,
         )
-    if as_json:
-        print_json(document(found))
-    else:
-        print_tables(found)
+    report(lambda: document(found), lambda: print_tables(found), as_json=as_json, csv_file=csv_file)
     drawing.draw_all(lambda form: recognition_pictures.all_figures(found, form).items())

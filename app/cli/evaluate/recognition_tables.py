@@ -8,7 +8,8 @@ from typing import Any
 import typer
 
 from app.cli.evaluate.confusion_table import print_confusion
-from app.cli.output import print_table, print_text
+from app.cli.evaluate.tables import show_table
+from app.cli.output import print_text
 from app.evaluate import RecognitionEvaluation
 from app.evaluate.recognition.clips import names_of
 from app.evaluate.recognition.perera import PereraEvaluation
@@ -44,23 +45,26 @@ def print_tables(found: RecognitionEvaluation) -> None:
 
 def _print_recognized(found: RecognitionEvaluation) -> None:
     if LeftOut.TAKE in found.held_out:
-        _print_shares("A fifth of the takes left out in turn", found.held_out[LeftOut.TAKE])
+        _print_shares(
+            "take_left_out", "A fifth of the takes left out in turn", found.held_out[LeftOut.TAKE]
+        )
     for takes, held in found.takes.items():
-        _print_shares(f"{_counted(takes, 'take')} a cell learned, drawn {DRAWS} times", held)
+        title = f"{_counted(takes, 'take')} a cell learned, {DRAWS} random draws"
+        _print_shares(f"{takes}_takes_learned", title, held)
 
 
 def _counted(number: int, noun: str) -> str:
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
-def _print_shares(title: str, held: HeldOut) -> None:
+def _print_shares(name: str, title: str, held: HeldOut) -> None:
     typer.echo(f"\n{title}; no label is given, the best candidate counts:\n")
     rows: list[list[object]] = [
         [one.method, *_values(one.recognized), one.recognized.both.of] for one in held.methods
     ]
     person, task, both = held.chance
     rows.append(["chance", task, person, both, held.methods[0].recognized.both.of])
-    print_table(["method", "task", "person", "both", "clips"], rows)
+    show_table(name, ["method", "task", "person", "both", "clips"], rows)
 
 
 def _values(found: Recognized) -> list[object]:
@@ -71,7 +75,8 @@ def _print_label_given(judged: Sequence[LabelGiven]) -> None:
     if not judged:
         return
     typer.echo("\nEach recording left out; the other label is given or not (Vasilescu, 5):\n")
-    print_table(
+    show_table(
+        "label_given",
         ["method", "task", "person given", "person", "task given"],
         [
             [
@@ -97,7 +102,8 @@ def _print_new(held: HeldOut, factor: str) -> None:
         f"the left-out\n{factor} is called new. known: other clips are called known (together: a "
         "person at a\ntask that was learned):\n"
     )
-    print_table(
+    show_table(
+        f"{factor}_left_out",
         ["method", other, "new", "known", "together", "balanced", "AUC", "EER", "worst"],
         [_new_row(one, factor, other) for one in held.methods],
     )
@@ -127,22 +133,25 @@ def _new_row(judged: Judged, factor: str, other: str) -> list[object]:
 def _print_categories(method: str, found: Unknown, factor: str) -> None:
     """Print a row for each label, the worst first."""
     ordered = sorted(found.categories, key=lambda one: (one.balanced_accuracy or 0.0, one.label))
-    typer.echo(f"\nEach {factor}, by {method}, the worst first:\n")
-    print_table(
-        [f"{factor} left out", "clips", "called new", "balanced", "taken for"],
+    typer.echo(f"\nOne by one, by {method}, the worst first:\n")
+    show_table(
+        f"each_{factor}_left_out",
+        [f"{factor} left out", "clips", "called new", "balanced", "else taken for"],
         [
             [one.label, one.refused.of, one.refused.value, one.balanced_accuracy, one.taken_for]
-            for one in ordered[:MAX_SHOWN]
+            for one in ordered
         ],
+        MAX_SHOWN,
     )
     if len(ordered) > MAX_SHOWN:
-        typer.echo(f"... and {len(ordered) - MAX_SHOWN} more; --json lists all.")
+        typer.echo(f"... and {len(ordered) - MAX_SHOWN} more; --json and --csv list all.")
 
 
 def _print_sources(held: HeldOut) -> None:
     typer.echo("\nA source left out: its clips of tasks that other sources have too:\n")
     names = list(held.methods[0].by_name)
-    print_table(
+    show_table(
+        "source_left_out",
         ["method", *(f"source {number}" for number in range(1, len(names) + 1)), "all"],
         [
             [
@@ -164,7 +173,7 @@ def _print_sources(held: HeldOut) -> None:
     ]  # fmt: skip
     if rows:
         typer.echo("\nIts tasks that no other source has, called new:\n")
-        print_table(["method", "new", "known", "balanced", "AUC"], rows)
+        show_table("source_left_out_new_tasks", ["method", "new", "known", "balanced", "AUC"], rows)
 
 
 def _print_perera(found: PereraEvaluation) -> None:
@@ -187,7 +196,8 @@ def _print_perera(found: PereraEvaluation) -> None:
                     row.paper,
                 ]
             )
-    print_table(["table", "eq. 14", "recognition", "probed", "right", "balanced", "paper"], rows)
+    columns = ["paper table", "eq. 14", "recognition", "probed", "right", "balanced", "paper"]
+    show_table("perera", columns, rows)
 
 
 def _print_made(kind: str, rows: Sequence[Mapping[str, Any]]) -> None:
@@ -200,7 +210,7 @@ def _print_made(kind: str, rows: Sequence[Mapping[str, Any]]) -> None:
     )
     names = ("given", "trials", "person", "task", "hit", "effects", "task_mean", "real")
     columns = [given, "trials", "person", "task", "both", "effects", "mean motion", "real"]
-    print_table(columns, [[row.get(name) for name in names] for row in rows])
+    show_table(f"made_{kind}", columns, [[row.get(name) for name in names] for row in rows])
 
 
 def _print_confusions(found: RecognitionEvaluation) -> None:
@@ -211,7 +221,7 @@ def _print_confusions(found: RecognitionEvaluation) -> None:
     for factor, (names, shares) in first.confusion.items():
         if names:
             typer.echo(f"\nWhat {factor}s are taken for by {first.method}, takes left out, %:\n")
-            print_confusion(names, shares)
+            print_confusion(names, shares, f"confusion_{factor}")
 
 
 def _remarks(found: RecognitionEvaluation) -> list[str]:

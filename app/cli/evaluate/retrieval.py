@@ -13,8 +13,9 @@ from app import evaluate
 from app.cli.evaluate.confusion_table import print_confusion
 from app.cli.evaluate.drawing import Drawing
 from app.cli.evaluate.running import judging, parsed_filter
+from app.cli.evaluate.tables import CsvFile, check_csv, report, show_table
 from app.cli.options import FilterJson, PictureFormat
-from app.cli.output import AsJson, print_json, print_table, print_text
+from app.cli.output import AsJson, print_text
 from app.evaluate import RetrievalEvaluation, VolumeEvaluation
 from app.evaluate import charts as pictures
 from app.evaluate.retrieval import pictures as retrieval_pictures
@@ -57,9 +58,11 @@ def retrieval(
     picture: Picture = None,
     pictures_dir: Pictures = None,
     picture_format: PictureFormat = "svg",
+    csv_file: CsvFile = None,
     as_json: AsJson = False,
 ) -> None:
-    """Search with each clip as the query; clips of the same task are relevant (Sun 2011)."""
+    """Each clip is a query; clips with the same task are relevant (Sun 2011)."""
+    check_csv(csv_file)
     filter = parsed_filter(filter_json)
     names = None if classes is None else [name.strip() for name in classes.split(",")]
     drawing = Drawing.prepared(picture, pictures_dir, picture_format)
@@ -75,10 +78,12 @@ def retrieval(
             progress=progress,
         )
         volumes = evaluate.judge_volumes(lib, filter, classes=names, threshold=eta)
-    if as_json:
-        print_json(_document(found, volumes))
-    else:
-        _print(found, volumes)
+    report(
+        lambda: _document(found, volumes),
+        lambda: _print(found, volumes),
+        as_json=as_json,
+        csv_file=csv_file,
+    )
     drawing.draw_one(lambda form: _confusions(found, form))
     drawing.draw_all(lambda form: retrieval_pictures.all_figures(found, volumes, form).items())
 
@@ -125,12 +130,14 @@ def _print(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> None:
     typer.echo(
         f"{queries} clips are queries for the others of their task, among {found.mixture}:\n"
     )
-    print_table(
+    show_table(
+        "figures",
         ["method", "1-NN", "P@4", "P@20", "MAP"],
         [list(asdict(judged.figures).values())[:5] for judged in found.methods],
     )
     typer.echo(f"\nTrue-positive rates among the {found.k} nearest in the mixture (table 1):\n")
-    print_table(
+    show_table(
+        "true_positive_rates",
         ["method", *found.chosen, "overall"],
         [
             [judged.figures.method, *judged.rates.tolist(), judged.overall]
@@ -143,7 +150,7 @@ def _print(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> None:
                 f"\nTrue classes, and classes of the {found.k} nearest clips by"
                 f" {judged.figures.method}, % (figure 8):\n"
             )
-            print_confusion(found.classes, judged.confusion)
+            print_confusion(found.classes, judged.confusion, f"confusion_{judged.figures.method}")
     print_text("\n" + "\n".join(_remarks(found, volumes)))
 
 

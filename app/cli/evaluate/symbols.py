@@ -11,8 +11,9 @@ import typer
 from app import evaluate
 from app.cli.evaluate.drawing import Drawing
 from app.cli.evaluate.running import parsed_filter
+from app.cli.evaluate.tables import CsvFile, check_csv, report, show_table
 from app.cli.options import FilterJson
-from app.cli.output import AsJson, print_json, print_table, print_text
+from app.cli.output import AsJson, print_text
 from app.cli.settings import open_library
 from app.models.held_out.symbols import SymbolFigures
 
@@ -25,22 +26,21 @@ def symbols(
     context: typer.Context,
     filter_json: FilterJson = None,
     picture: Picture = None,
+    csv_file: CsvFile = None,
     as_json: AsJson = False,
 ) -> None:
-    """Measure the errors of the motion symbol space by its dimensions (Takano)."""
+    """How many dimensions motion symbols need, and how well new ones are placed (Takano)."""
+    check_csv(csv_file)
     filter, drawing = parsed_filter(filter_json), Drawing.prepared(picture)
     with open_library(context) as lib:
         found = evaluate.judge_symbols(lib, filter)
-    if as_json:
-        print_json(asdict(found))
-    else:
-        _print(found)
+    report(lambda: asdict(found), lambda: _print(found), as_json=as_json, csv_file=csv_file)
     drawing.draw_one(lambda form: evaluate.draw_symbols(found, form))
 
 
 def _print(found: SymbolFigures) -> None:
     rows = [asdict(errors) for errors in found.errors]
-    print_table(list(rows[0]), [list(row.values()) for row in rows])
+    show_table("errors", list(rows[0]), [list(row.values()) for row in rows])
     print_text(
         f"{found.symbols} symbols. Distances to landmarks are off by "
         f"{found.placing_error:.1%} for symbols placed later, {found.fitting_error:.1%} among "

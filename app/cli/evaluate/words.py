@@ -12,8 +12,9 @@ import typer
 from app import evaluate
 from app.cli.evaluate.drawing import Drawing
 from app.cli.evaluate.running import parsed_filter
+from app.cli.evaluate.tables import CsvFile, check_csv, keep_table, report, show_table
 from app.cli.options import FilterJson
-from app.cli.output import AsJson, print_json, print_table, print_text
+from app.cli.output import AsJson, print_table, print_text
 from app.cli.settings import open_library
 from app.evaluate import WordExample
 from app.models.held_out.words import (
@@ -36,7 +37,7 @@ Picture = Annotated[
     Path | None, typer.Option(help="Draw recall against precision: a .svg, .png or .pdf file.")
 ]
 MAX_SHOWN = 40
-"""Largest number of words in the printed table; --json has all."""
+"""Largest number of words in the printed table; --json and --csv have all."""
 
 
 def words(
@@ -44,17 +45,21 @@ def words(
     query: Queries = None,
     filter_json: FilterJson = None,
     picture: Picture = None,
+    csv_file: CsvFile = None,
     as_json: AsJson = False,
 ) -> None:
     """Find words for clips and clips for words, held out and in-sample."""
+    check_csv(csv_file)
     filter, drawing = parsed_filter(filter_json), Drawing.prepared(picture)
     with open_library(context) as lib:
         found = evaluate.judge_words(lib, filter)
         examples = evaluate.word_examples(lib, query, filter)
-    if as_json:
-        print_json(_document(found, examples))
-    else:
-        _print(found, examples)
+    report(
+        lambda: _document(found, examples),
+        lambda: _print(found, examples),
+        as_json=as_json,
+        csv_file=csv_file,
+    )
     drawing.draw_one(lambda form: evaluate.draw_words(found, form))
 
 
@@ -71,9 +76,9 @@ def _print(found: WordEvaluation, examples: Sequence[WordExample]) -> None:
     typer.echo(
         f"{found.clips} clips, {found.words} words. Held out, {found.folds} folds by recording:\n"
     )
-    _print_figures(found.figures)
+    _print_figures("held_out", found.figures)
     typer.echo("\nIn-sample, as the paper judged retrieval (section 3):\n")
-    _print_figures(found.in_sample)
+    _print_figures("in_sample", found.in_sample)
     typer.echo("\nPrecision of single words at a recall, held out (figure 7):\n")
     _print_curves(found.figures)
     for method, one in found.reliability.items():
@@ -92,8 +97,9 @@ def _print(found: WordEvaluation, examples: Sequence[WordExample]) -> None:
         _print_example(example)
 
 
-def _print_figures(figures: Sequence[WordFigures]) -> None:
-    print_table(
+def _print_figures(name: str, figures: Sequence[WordFigures]) -> None:
+    show_table(
+        name,
         ["method", "top-3 words", "word F", "word MAP", "set F", "set MAP"],
         [
             [f.method, f.top_3_recognition, f.word_f, f.word_map, f.set_f, f.set_map]
@@ -103,7 +109,17 @@ def _print_figures(figures: Sequence[WordFigures]) -> None:
 
 
 def _print_curves(figures: Sequence[WordFigures]) -> None:
-    columns = range(2, len(RECALLS), 2)  # every second recall, so that a line fits
+    """Print some recalls; the CSV file gets all, a row each."""
+    keep_table(
+        "precision_at_recall",
+        ["method", "recall", "precision"],
+        [
+            [one.method, recall, precision]
+            for one in figures
+            for recall, precision in zip(RECALLS, one.precision, strict=True)
+        ],
+    )
+    columns = range(2, len(RECALLS), 2)
     print_table(
         ["method", *(f"{RECALLS[column]:.1f}" for column in columns)],
         [[one.method, *(one.precision[column] for column in columns)] for one in figures],
@@ -112,15 +128,17 @@ def _print_curves(figures: Sequence[WordFigures]) -> None:
 
 def _print_words(by_word: Sequence[JudgedWord]) -> None:
     judged = [one for one in by_word if not one.too_rare]
-    print_table(
+    show_table(
+        "words",
         ["word", "clips", "recordings", "AP", "F", "AUC"],
         [
             [o.word, o.clips, o.recordings, o.average_precision, o.f, o.area_under_curve]
-            for o in judged[:MAX_SHOWN]
+            for o in judged
         ],
+        MAX_SHOWN,
     )
     if len(judged) > MAX_SHOWN:
-        typer.echo(f"... and {len(judged) - MAX_SHOWN} more words; --json lists all.")
+        typer.echo(f"... and {len(judged) - MAX_SHOWN} more words; --json and --csv list all.")
     rare = [one.word for one in by_word if one.too_rare]
     if rare:
         more = "" if len(rare) <= MAX_SHOWN else f" and {len(rare) - MAX_SHOWN} more"
@@ -131,11 +149,12 @@ def _print_words(by_word: Sequence[JudgedWord]) -> None:
 
 
 def _print_example(example: WordExample) -> None:
+    query = " ".join(example.words)
     typer.echo(f"\nNearest to {', '.join(example.words)} in the correlated space (table 2):\n")
-    print_table(
-        ["clip", "distance / shortest", "carries", "words"],
-        [
-            [near.name, near.ratio, "yes" if near.carries else "", " ".join(near.words)]
-            for near in example.nearest
-        ],
-    )
+    columns = ["clip", "distance / shortest", "carries", "words"]
+    rows = [
+        [near.name, near.ratio, "yes" if near.carries else "", " ".join(near.words)]
+        for near in example.nearest
+    ]
+    keep_table("examples", ["query", *columns], [[query, *row] for row in rows])
+    print_table(columns, rows)

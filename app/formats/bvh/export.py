@@ -1,4 +1,5 @@
-"""Writes an animation as a BVH file in centimeters, Y up, which most programs expect.
+"""An animation as a BVH file: Y up, and in centimeters unless said otherwise, as most programs
+expect.
 
 A joint that moves relative to its parent has position channels. A leaf without an end site gets
 one, because other programs need it.
@@ -17,19 +18,21 @@ from app.motion.skeleton.animation import Animation
 from app.motion.skeleton.skeleton import Skeleton
 
 UNITS_PER_METER = 100.0
-"""BVH files do not give their unit; centimeters are usual."""
+"""BVH does not say its unit. Centimeters are usual; Blender takes the numbers for meters."""
 ROTATION_ORDER = "ZXY"
 END_SHARE = 0.5
 """The length of an added end site, as a share of the bone before it."""
 
 
-def write_animation_bvh(animation: Animation) -> Iterator[bytes]:
-    """The bytes of a BVH file of the animation, in blocks."""
-    skeleton = _scaled(_with_end_sites(animation.skeleton))
+def write_animation_bvh(
+    animation: Animation, units_per_meter: float = UNITS_PER_METER
+) -> Iterator[bytes]:
+    """A BVH file of the animation, piece by piece."""
+    skeleton = _scaled(_with_end_sites(animation.skeleton), units_per_meter)
     return bvh_blocks(
         replace(skeleton, names=tuple(bvh_name(name) for name in skeleton.names)),
         animation.rotations,
-        animation.translations * UNITS_PER_METER,
+        animation.translations * units_per_meter,
         animation.frame_rate,
         ROTATION_ORDER,
         np.flatnonzero(animation.moving_joints()).tolist(),
@@ -42,11 +45,11 @@ def bvh_name(name: str) -> str:
     return " ".join(plain.split())[:MAX_NAME_LENGTH].strip() or "joint"
 
 
-def _scaled(skeleton: Skeleton) -> Skeleton:
+def _scaled(skeleton: Skeleton, by: float) -> Skeleton:
     return replace(
         skeleton,
-        offsets=skeleton.offsets * UNITS_PER_METER,
-        end_offsets=skeleton.end_offsets * UNITS_PER_METER,
+        offsets=skeleton.offsets * by,
+        end_offsets=skeleton.end_offsets * by,
     )
 
 

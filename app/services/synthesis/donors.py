@@ -25,7 +25,7 @@ from app.services.library.ready_clips import ready_clip
 from app.services.library.stored_motion import load_motion
 from app.services.synthesis.plan import Plan
 from app.services.training.synthesis_fit import SHAPE
-from app.services.views.export import own_animation
+from app.services.views.clip_rotations import own_animation
 from app.store.clips.record import ClipRecord
 
 MAX_DONORS = 5

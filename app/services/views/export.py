@@ -1,4 +1,4 @@
-"""Exports a ready clip as a file for other programs: BVH, GLB, NPZ or CSV.
+"""Exports a ready clip as a file for other programs: BVH, GLB, NPZ, CSV, C3D or TRC.
 
 BVH and GLB need rotations. If the clip's file has rotations, a child process reads it again, and
 they are rotated and scaled like the clip. If the file has none, or if it no longer gives the stored
@@ -13,38 +13,37 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from enum import StrEnum
-from typing import TypeVar
 
 import numpy as np
 
-from app.errors import BadContent, FileDamaged, StoredFileMissing
 from app.formats.bvh.export import write_animation_bvh
-from app.formats.csv_writer import write_csv
+from app.formats.c3d.writer import write_c3d
+from app.formats.csv.writer import axis_columns, csv_tracks
 from app.formats.gltf.writer import write_glb
 from app.formats.npz.writer import write_npz
+from app.formats.trc.writer import write_trc
 from app.motion.frame.body_frame import ANALYSIS_RATE
 from app.motion.motion import Motion
 from app.motion.posing.canonical_body import on_canonical_body
-from app.motion.posing.file_rotations import animation_of_recording
-from app.motion.roles.joint_roles import SUN_ROLES
-from app.motion.skeleton.animation import Animation, animation_of_positions
-from app.motion.skeleton.resampling import resample
+from app.motion.roles.joint_roles import SUN_ROLES, JointRole
+from app.motion.skeleton.animation import Animation
 from app.numerics.arrays import FloatArray, IntArray
-from app.services import fields
-from app.services.clips.ingest import analysis_request
 from app.services.library.library import Library
 from app.services.library.ready_clips import ready_clip
 from app.services.library.stored_motion import load_motion
-from app.services.views.export_format import ExportFormat, ExportSkeleton
+from app.services.views.clip_rotations import own_animation, resampled, solved_animation
+from app.services.views.export_format import (
+    ExportContent,
+    ExportFormat,
+    ExportJoints,
+    ExportSkeleton,
+    ExportUnit,
+)
+from app.services.views.export_options import ExportOptions, checked_options
 from app.services.views.frame_rates import requested_rate
 from app.services.views.low_dimensional import Reduction, as_motion, reduce
+from app.services.views.tables import table_of
 from app.store.clips.record import ClipRecord
-
-_Kind = TypeVar("_Kind", bound=StrEnum)
-
-POSITION_FORMATS = frozenset({"c3d", "npy"})
-"""File formats without rotations; such files need not be read again."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,93 +67,118 @@ def export(
     clip_id: str,
     format: ExportFormat | str,
     *,
-    fps: float | None = None,
+    content: ExportContent | str | None = None,
+    unit: ExportUnit | str | None = None,
+    joints: ExportJoints | str = ExportJoints.ALL,
     skeleton: ExportSkeleton | str = ExportSkeleton.OWN,
+    fps: float | None = None,
     reduction: Reduction | None = None,
 ) -> Export:
     """A clip as a file of `format`, resampled by time to `fps` (default: its own rate).
 
-    reduction: reduce the motion to few dimensions, on the 13 joint roles, by default at 30 Hz.
-    Raises BadField, ClipNotFound, ClipNotReady, NotEnoughKeyposes.
+    content: the table of a CSV file (default: positions). unit: of lengths (default: that of the
+    format). joints: all, or those with a role, by role. reduction: reduce the motion to few
+    dimensions, on the 13 joint roles, by default at 30 Hz.
+
+    Raises BadField, ClipNotFound, ClipNotReady, NotEnoughKeyposes, NoGait.
     """
-    file_format = _choice("format", ExportFormat, format)
-    body = _choice("skeleton", ExportSkeleton, skeleton)
+    options = checked_options(
+        format,
+        content=content,
+        unit=unit,
+        joints=joints,
+        skeleton=skeleton,
+        fps=fps,
+        reduction=reduction,
+    )
     clip = ready_clip(lib, clip_id)
+    if options.content is not ExportContent.POSITIONS:
+        source, joints = clip.frame_rate or 1.0, clip.joints or 0
+        rate = requested_rate(lib, clip, fps, source=source, joints=joints)
+        table = table_of(lib, clip, options.content, rate)
+        return Export(f"{_safe_stem(clip)}-{options.content}.csv", table)
+    motion, rate, ending = _motion(lib, clip, options)
+    name = f"{_safe_stem(clip)}{ending}.{options.format.value}"
+    return Export(name, _blocks(lib, clip, options, motion, rate, name))
+
+
+def _motion(lib: Library, clip: ClipRecord, options: ExportOptions) -> tuple[Motion, float, str]:
+    """The motion, the requested rate, and the ending of the file name."""
+    reduction = options.reduction
     source = clip.frame_rate or 1.0 if reduction is None else ANALYSIS_RATE
     joints = clip.joints or 0 if reduction is None else len(SUN_ROLES)
-    rate = requested_rate(lib, clip, fps, source=source, joints=joints)
-    suffix = "-canonical" if body is ExportSkeleton.CANONICAL else ""
+    rate = requested_rate(lib, clip, options.fps, source=source, joints=joints)
+    ending = "-canonical" if options.skeleton is ExportSkeleton.CANONICAL else ""
     if reduction is None:
-        motion = load_motion(lib, clip)
-    else:
-        reduced = reduce(lib, clip, reduction)
-        motion = as_motion(reduced, clip)
-        suffix = f"-{reduced.basis.value}-{reduced.dimensions}dim{suffix}"
-    if body is ExportSkeleton.CANONICAL:
-        blocks = _of_animation(file_format, on_canonical_body(_resampled(motion, rate)), clip)
-    elif file_format in (ExportFormat.NPZ, ExportFormat.CSV):
-        # These formats have positions only, so no rotations are read or solved.
-        motion = _resampled(motion, rate)
-        blocks = _of_positions(
-            file_format, _Positions(motion.names, motion.parents, motion.positions, rate)
-        )
-    elif reduction is None:
-        blocks = _of_animation(file_format, own_animation(lib, clip, motion, rate), clip)
-    else:
-        blocks = _of_animation(file_format, _solved(motion, rate), clip)
-    return Export(f"{_safe_stem(clip)}{suffix}.{file_format.value}", blocks)
+        return load_motion(lib, clip), rate, ending
+    found = reduce(lib, clip, reduction)
+    return as_motion(found, clip), rate, f"-{found.basis.value}-{found.dimensions}dim{ending}"
 
 
-def _choice(field: str, kind: type[_Kind], value: str) -> _Kind:
-    try:
-        return kind(value)
-    except ValueError:
-        raise fields.bad_field(field, f"must be one of {', '.join(kind)}") from None
-
-
-def _resampled(motion: Motion, rate: float) -> Motion:
-    if rate == motion.frame_rate:
-        return motion
-    positions = resample(motion.positions, motion.frame_rate, rate)
-    return replace(motion, positions=positions.astype(np.float32), frame_rate=rate)
-
-
-def own_animation(lib: Library, clip: ClipRecord, motion: Motion, rate: float) -> Animation:
-    """The clip's joint rotations at `rate` Hz: from its file, or else solved from positions."""
-    if clip.format not in POSITION_FORMATS:
-        try:
-            recording = lib.pool.read(analysis_request(lib, clip))
-        except (BadContent, FileDamaged, StoredFileMissing):
-            recording = None  # the stored positions are enough
-        animation = animation_of_recording(recording, motion) if recording else None
-        if animation is not None:
-            return animation.resampled(rate)
-    return _solved(motion, rate)
-
-
-def _solved(motion: Motion, rate: float) -> Animation:
-    motion = _resampled(motion, rate)
-    return animation_of_positions(motion.names, motion.parents, motion.positions, rate)
-
-
-def _of_animation(
-    file_format: ExportFormat, animation: Animation, clip: ClipRecord
+def _blocks(
+    lib: Library, clip: ClipRecord, options: ExportOptions, motion: Motion, rate: float, name: str
 ) -> Iterable[bytes]:
-    if file_format is ExportFormat.BVH:
-        return write_animation_bvh(animation)
-    if file_format is ExportFormat.GLB:
-        return [write_glb(animation, clip.name, clip.license)]
-    skeleton = animation.skeleton
-    positions = animation.positions().astype(np.float32)
-    return _of_positions(
-        file_format, _Positions(skeleton.names, skeleton.parents, positions, animation.frame_rate)
+    if options.skeleton is ExportSkeleton.CANONICAL:
+        animation = on_canonical_body(resampled(motion, rate))
+        return _of_animation(options, animation, clip, name)
+    if options.format not in (ExportFormat.BVH, ExportFormat.GLB):
+        motion = resampled(motion, rate)
+        if options.joints is ExportJoints.ROLES:
+            motion = _by_role(motion)
+        tracks = _Positions(motion.names, motion.parents, motion.positions, rate)
+        return _of_positions(options, tracks, name)
+    if options.reduction is None:
+        return _of_animation(options, own_animation(lib, clip, motion, rate), clip, name)
+    return _of_animation(options, solved_animation(motion, rate), clip, name)
+
+
+def _by_role(motion: Motion) -> Motion:
+    """The joints of which the role is known, named by role."""
+    roles = [role for role in JointRole if role in motion.roles]
+    above = [_above(role, roles) for role in roles]
+    parents = [-1 if role is None else roles.index(role) for role in above]
+    return replace(
+        motion,
+        names=tuple(role.value for role in roles),
+        parents=np.array(parents),
+        positions=motion.positions[:, [motion.roles[role] for role in roles]],
+        roles={role: joint for joint, role in enumerate(roles)},
     )
 
 
-def _of_positions(file_format: ExportFormat, motion: _Positions) -> Iterable[bytes]:
-    if file_format is ExportFormat.NPZ:
-        return [write_npz(motion.names, motion.parents, motion.positions, motion.frame_rate)]
-    return write_csv(motion.names, motion.positions, motion.frame_rate)
+def _above(role: JointRole, roles: Sequence[JointRole]) -> JointRole | None:
+    """The nearest of `roles` toward the trunk."""
+    while role is not role.toward_trunk():
+        role = role.toward_trunk()
+        if role in roles:
+            return role
+    return None
+
+
+def _of_animation(
+    options: ExportOptions, animation: Animation, clip: ClipRecord, name: str
+) -> Iterable[bytes]:
+    if options.format is ExportFormat.BVH:
+        return write_animation_bvh(animation, options.units_per_meter)
+    if options.format is ExportFormat.GLB:
+        return [write_glb(animation, clip.name, clip.license)]
+    skeleton = animation.skeleton
+    positions = animation.positions().astype(np.float32)
+    tracks = _Positions(skeleton.names, skeleton.parents, positions, animation.frame_rate)
+    return _of_positions(options, tracks, name)
+
+
+def _of_positions(options: ExportOptions, tracks: _Positions, name: str) -> Iterable[bytes]:
+    unit, scale = options.unit.value, options.units_per_meter
+    names, positions, rate = tracks.names, tracks.positions, tracks.frame_rate
+    if options.format is ExportFormat.NPZ:
+        return [write_npz(names, tracks.parents, positions, rate)]
+    if options.format is ExportFormat.C3D:
+        return write_c3d(names, positions, rate, unit=unit, units_per_meter=scale)
+    if options.format is ExportFormat.TRC:
+        return write_trc(names, positions, rate, unit=unit, units_per_meter=scale, file_name=name)
+    flat = positions.reshape(len(positions), -1)
+    return csv_tracks(axis_columns(names, unit), flat if scale == 1 else flat * scale, rate)
 
 
 def _safe_stem(clip: ClipRecord) -> str:

@@ -9,6 +9,7 @@ import pytest
 from app.services.imports.imports import import_path
 from app.services.library.library import Library
 from tests.cli.conftest import Kinedex
+from tests.formats.csv.files import rows_of
 from tests.libraries import settings_for, work
 from tests.named_dances import TEMPI, write_dances
 
@@ -38,13 +39,19 @@ def test_tables_for_people_fit_a_terminal(kinedex: Kinedex, danced: Path) -> Non
     assert "…" not in ended.out
 
 
-def test_json_for_programs(kinedex: Kinedex, danced: Path) -> None:
-    result = kinedex(*COMMAND, "--json", "--tolerance", "0.05", data_dir=danced).json()
+def test_json_and_csv_for_programs(kinedex: Kinedex, danced: Path, tmp_path: Path) -> None:
+    file = tmp_path / "tables.csv"
+    options = ("--json", "--tolerance", "0.05", "--csv", str(file))
+    result = kinedex(*COMMAND, *options, data_dir=danced).json()
     assert result["tolerance"] == 0.05
     assert len(result["clips"]) == result["recordings"] == len(TEMPI)
     rms = result["methods"]["rms"]
     assert set(rms) == {"held_out", "usual_thresholds", "learned", "over_t1", "over_t2"}
     assert len(rms["over_t1"]["values"]) == len(rms["over_t1"]["recall"])
+    rows = rows_of(file)
+    assert {row["table"] for row in rows} == {"clips", "methods", "over_t1", "over_t2"}
+    recalls = [float(r["recall"]) for r in rows if r["curve"].startswith("rms, T2 =")]
+    assert recalls == pytest.approx(rms["over_t1"]["recall"], abs=1e-6)
 
 
 def test_a_fit_learns_thresholds_from_the_keyposes_of_the_manifest(

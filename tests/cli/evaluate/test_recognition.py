@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import Kinedex
+from tests.formats.csv.files import rows_of
 
 COMMAND = ("evaluate", "recognition")
 QUICK = (*COMMAND, "--method", "mean-motion", "--method", "prior")
@@ -32,8 +33,11 @@ def test_tables_for_people(kinedex: Kinedex) -> None:
     assert "ms a probe after its features" in ended.out
 
 
-def test_json_for_programs(kinedex: Kinedex) -> None:
-    result = kinedex(*QUICK, "--json").json()
+def test_json_and_csv_for_programs(kinedex: Kinedex, tmp_path: Path) -> None:
+    file = tmp_path / "tables.csv"
+    result = kinedex(*QUICK, "--json", "--csv", str(file)).json()
+    tables = {row["table"] for row in rows_of(file)}
+    assert {"take_left_out", "task_left_out", "each_task_left_out", "perera"} <= tables
     assert result["clips"]["persons"] == ["ada", "bruno"]
     assert result["clips"]["tasks"] == ["kick", "walk", "wave"]
     by_take = result["left_out"]["take"]

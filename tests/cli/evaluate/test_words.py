@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from tests.cli.conftest import Kinedex
+from tests.formats.csv.files import rows_of
 
 METHODS = ["prior", "default", "cca", "cca-score", "cca-distance", "cca-pinv", "cca-symbol"]
 
@@ -26,8 +27,14 @@ def test_tables_for_people(kinedex: Kinedex, tmp_path: Path) -> None:
     assert picture.read_bytes().startswith(b"<?xml")
 
 
-def test_json_for_programs(kinedex: Kinedex) -> None:
-    result = kinedex("evaluate", "words", "--json").json()
+def test_json_and_csv_for_programs(kinedex: Kinedex, tmp_path: Path) -> None:
+    file = tmp_path / "tables.csv"
+    result = kinedex("evaluate", "words", "--json", "--csv", str(file)).json()
+    rows = rows_of(file)
+    words = {row["word"] for row in rows if row["table"] == "words"}
+    assert words == {one["word"] for one in result["by_word"] if not one["too_rare"]}
+    curve = [float(row["recall"]) for row in rows if row["table"] == "precision_at_recall"]
+    assert len(curve) == len(METHODS) * len(result["recalls"])
     assert [row["method"] for row in result["figures"]] == METHODS
     assert [row["method"] for row in result["in_sample"]] == METHODS
     assert all(len(row["precision"]) == len(result["recalls"]) for row in result["figures"])

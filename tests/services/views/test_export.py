@@ -12,19 +12,25 @@ import pytest
 from app.demo import DemoClip
 from app.errors import BadField, ClipNotFound, ClipNotReady
 from app.formats.bvh.reader import read_bvh
+from app.formats.c3d.points import read_points
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalize
+from app.motion.canonical.units import METERS_PER_UNIT
+from app.motion.canonical.up_axis import to_y_up
 from app.motion.motion import Motion
 from app.motion.posing.canonical_body import BODY_ROLES
+from app.motion.roles.joint_roles import JointRole
 from app.numerics.arrays import FloatArray
 from app.services.clips import catalogue as clips
 from app.services.library.library import Library
 from app.services.library.stored_motion import load_motion
 from app.services.views import export, views
-from app.services.views.export_format import ExportFormat
+from app.services.views.export_format import ExportFormat, ExportUnit
+from app.services.views.low_dimensional import Reduction
 from app.store.clips.record import ClipRecord, ClipState
 from tests.formats.gltf.files import Glb
 from tests.formats.npz.files import npz
+from tests.formats.trc.files import opensim
 from tests.libraries import FindClip, upload, work
 from tests.people import CONVENTIONS, person
 
@@ -45,7 +51,14 @@ def positions_of(content: bytes, format: str) -> tuple[tuple[str, ...], FloatArr
     if format == "csv":
         head, *rows = csv.reader(io.StringIO(content.decode()))
         numbers = np.array(rows, dtype=float)[:, 1:]
-        return tuple(name[:-2] for name in head[1::3]), numbers.reshape(len(rows), -1, 3)
+        names = tuple(name.removesuffix("_x_m") for name in head[1::3])
+        return names, numbers.reshape(len(rows), -1, 3)
+    if format == "trc":
+        _, labels, _, positions = opensim(content)
+        return tuple(labels), positions / 1000
+    if format == "c3d":
+        points = read_points(content)
+        return points.labels, to_y_up(points.positions, "z") / 1000
     recording = read_recording(content)
     scale = 0.01 if format == "bvh" else 1.0
     return recording.skeleton.names, recording.positions * scale
@@ -69,7 +82,49 @@ def test_exported_positions_are_within_a_tenth_of_a_millimeter(
     assert_same_places(content, format, load_motion(ready_library, clip), TENTH_OF_MM)
 
 
-def test_an_exported_bvh_can_be_uploaded_as_the_same_motion(
+@pytest.mark.parametrize("unit", ExportUnit)
+@pytest.mark.parametrize("format", ["bvh", "csv", "c3d", "trc"])
+def test_lengths_have_the_unit_that_is_asked_for(
+    ready_library: Library, clip_of: FindClip, format: str, unit: ExportUnit
+) -> None:
+    clip = clip_of("ada", "walk")
+    content = exported(ready_library, clip, format, unit=unit)
+    meters = METERS_PER_UNIT[unit]
+    if format == "bvh":
+        positions = read_bvh(content).positions * meters
+        names = read_bvh(content).skeleton.names
+    elif format == "csv":
+        head, *rows = csv.reader(io.StringIO(content.decode()))
+        names = tuple(name.removesuffix(f"_x_{unit}") for name in head[1::3])
+        positions = meters * np.array(rows, dtype=float)[:, 1:].reshape(len(rows), -1, 3)
+    elif format == "trc":
+        meta, labels, _, found = opensim(content)
+        assert meta["Units"] == unit
+        names, positions = tuple(labels), found * meters
+    else:
+        points = read_points(content)
+        names, positions = points.labels, to_y_up(points.positions, "z") * meters
+    seen = load_motion(ready_library, clip)
+    order = [seen.names.index(name) for name in names]
+    assert np.abs(positions - seen.positions[:, order]).max() < TENTH_OF_MM
+
+
+@pytest.mark.parametrize("format", ["npz", "csv", "c3d", "trc"])
+def test_joints_may_be_called_by_their_roles(
+    ready_library: Library, clip_of: FindClip, format: str
+) -> None:
+    clip = clip_of("ada", "walk")
+    motion = load_motion(ready_library, clip)
+    names, positions = positions_of(exported(ready_library, clip, format, joints="roles"), format)
+    assert set(names) == {role.value for role in motion.roles}
+    columns = [motion.roles[JointRole(name)] for name in names]
+    assert np.abs(positions - motion.positions[:, columns]).max() < TENTH_OF_MM
+    if format == "npz":
+        again = read_recording(exported(ready_library, clip, format, joints="roles"))
+        assert np.count_nonzero(again.skeleton.parents < 0) == 1
+
+
+def test_a_bvh_that_is_imported_again_is_the_same_motion(
     ready_library: Library, clip_of: FindClip
 ) -> None:
     before = load_motion(ready_library, clip_of("bruno", "kick"))
@@ -176,6 +231,18 @@ def test_file_names_are_safe(
         ({"format": "csv", "fps": 0.0}, "fps"),
         ({"format": "csv", "fps": float("nan")}, "fps"),
         ({"format": "glb", "fps": 1001.0}, "fps"),
+        ({"format": "csv", "content": "forces"}, "content"),
+        ({"format": "bvh", "content": "positions"}, "content"),
+        ({"format": "bvh", "unit": "parsec"}, "unit"),
+        ({"format": "glb", "unit": "mm"}, "unit"),
+        ({"format": "npz", "unit": "cm"}, "unit"),
+        ({"format": "csv", "content": "gait", "unit": "cm"}, "unit"),
+        ({"format": "bvh", "joints": "roles"}, "joints"),
+        ({"format": "csv", "joints": "some"}, "joints"),
+        ({"format": "csv", "content": "angles", "joints": "roles"}, "joints"),
+        ({"format": "csv", "content": "angles", "skeleton": "canonical"}, "skeleton"),
+        ({"format": "csv", "content": "angles", "reduction": Reduction(3)}, "dimensions"),
+        ({"format": "csv", "content": "cycles", "fps": 30.0}, "fps"),
     ],
 )
 def test_a_wrong_field_is_named(

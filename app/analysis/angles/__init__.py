@@ -1,0 +1,1 @@
+"""Joint angles as gait laboratories report them: hip, knee, ankle, pelvis, trunk and arms."""

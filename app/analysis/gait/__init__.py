@@ -1,0 +1,1 @@
+"""Gait: foot strikes, strides, their parameters, and angles over the gait cycle."""
