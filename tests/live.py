@@ -35,7 +35,7 @@ class Live:
     def client(self, **options: Any) -> httpx2.Client:
         """An HTTP client of the service, which ignores proxy settings of the machine."""
         return httpx2.Client(
-            base_url=self.url, timeout=60.0, trust_env=False, verify=NO_TLS, **options
+            base_url=self.url, timeout=180.0, trust_env=False, verify=NO_TLS, **options
         )
 
     def upload(self, clip: DemoClip, **fields: str) -> httpx2.Response:

@@ -39,7 +39,7 @@ EXPECTED_TEXTS = [
 
 def test_output_without_logging_becomes_json() -> None:
     program = [sys.executable, "-c", "from tests.noisy_program import main; main()"]
-    ended = subprocess.run(program, capture_output=True, timeout=120, check=False)
+    ended = subprocess.run(program, capture_output=True, timeout=400, check=False)
     assert ended.returncode == 1
     lines: list[dict[str, Any]] = [json.loads(line) for line in ended.stderr.splitlines()]
     assert all(line["level"] and line["time"] for line in lines)

@@ -57,7 +57,7 @@ def environment(**settings: object) -> dict[str, str]:
     return clean | {f"KINEDEX_{name.upper()}": str(value) for name, value in settings.items()}
 
 
-def end(process: subprocess.Popen[str], seconds: float = 120.0) -> Ended:
+def end(process: subprocess.Popen[str], seconds: float = 400.0) -> Ended:
     """Wait for the end of a program."""
     try:
         out, err = process.communicate(timeout=seconds)

@@ -52,7 +52,7 @@ def run(*words: str, **settings: object) -> Run:
         env=environment(**settings),
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=400,
         check=True,
     )
     after = resource.getrusage(resource.RUSAGE_CHILDREN)

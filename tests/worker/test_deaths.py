@@ -38,7 +38,7 @@ from tests.libraries import settings_for, upload
 from tests.live import wait_until
 from tests.worker.worker_process import worker_process
 
-NET_S = 120.0
+NET_S = 300.0
 
 
 @pytest.fixture

@@ -28,7 +28,7 @@ from tests.live import wait_until
 from tests.worker.worker_process import worker_process
 from tests.zip_archives import zip_archive
 
-TIMEOUT_S = 60.0
+TIMEOUT_S = 240.0
 SHORT_LEASES = {"job_lease_s": 1.0, "job_heartbeat_s": 0.2}
 
 

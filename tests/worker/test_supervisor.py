@@ -20,7 +20,7 @@ from app.worker import supervisor
 from app.worker.supervisor import SupervisedProcess, environment, keep_running
 from tests.live import wait_until
 
-TIMEOUT_S = 20.0
+TIMEOUT_S = 120.0
 SLEEPER = "import os, sys, time; open(sys.argv[1], 'a').write(f'{os.getpid()}\\n'); time.sleep(60)"
 
 

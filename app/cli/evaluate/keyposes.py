@@ -53,7 +53,7 @@ def keyposes(
     csv_file: CsvFile = None,
     as_json: AsJson = False,
 ) -> None:
-    """Keyposes found against those that people named (Perera 2009, table 1, figs 3 to 6)."""
+    """Compare found keyposes with annotated ones (Perera 2009, table 1, figs 3 to 6)."""
     check_csv(csv_file)
     filter = parsed_filter(filter_json)
     drawing = Drawing.prepared(picture, pictures_dir, picture_format)

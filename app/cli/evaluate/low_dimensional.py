@@ -30,7 +30,7 @@ def low_dimensional(
     csv_file: CsvFile = None,
     as_json: AsJson = False,
 ) -> None:
-    """Motions drawn from few dimensions of keyposes, and of uniform poses (Perera 2009)."""
+    """Compare keyposes with uniform poses as basis of low-dimensional motion (Perera 2009)."""
     check_csv(csv_file)
     filter = parsed_filter(filter_json)
     drawing = Drawing.prepared(folder=pictures_dir, picture_format=picture_format)

@@ -49,7 +49,7 @@ def recognition(
     csv_file: CsvFile = None,
     as_json: AsJson = False,
 ) -> None:
-    """Person and task, held out by take, person, task and source (Vasilescu; Perera, 5)."""
+    """Recognize held-out takes, persons, tasks and sources (Vasilescu; Perera, section 5)."""
     check_csv(csv_file)
     filter = parsed_filter(filter_json)
     drawing = Drawing.prepared(folder=pictures_dir, picture_format=picture_format)

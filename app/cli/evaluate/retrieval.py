@@ -61,7 +61,7 @@ def retrieval(
     csv_file: CsvFile = None,
     as_json: AsJson = False,
 ) -> None:
-    """Each clip is a query; clips with the same task are relevant (Sun 2011)."""
+    """Search with each clip as the query; clips of the same task are relevant (Sun 2011)."""
     check_csv(csv_file)
     filter = parsed_filter(filter_json)
     names = None if classes is None else [name.strip() for name in classes.split(",")]

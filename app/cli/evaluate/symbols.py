@@ -29,7 +29,7 @@ def symbols(
     csv_file: CsvFile = None,
     as_json: AsJson = False,
 ) -> None:
-    """How many dimensions motion symbols need, and how well new ones are placed (Takano)."""
+    """Measure the errors of the motion symbol space by its dimensions (Takano)."""
     check_csv(csv_file)
     filter, drawing = parsed_filter(filter_json), Drawing.prepared(picture)
     with open_library(context) as lib:

@@ -18,7 +18,7 @@ from app.services.children.child import ChildEnded
 from app.services.children.pool import ChildPool, TaskTimedOut
 from tests.live import wait_until
 
-NET_S = 60.0
+NET_S = 240.0
 """Time limit of every wait: much more than any test needs."""
 
 

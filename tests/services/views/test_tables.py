@@ -134,6 +134,6 @@ def test_positions_without_rotations_give_some_angles(lib: Library) -> None:
     assert rows[0]["neutral_pose"] == "positions"
     assert rows[0]["left_hip_flexion_deg"] == ""
     assert np.isfinite(column(rows, "left_knee_flexion_deg")).all()
-    keyposes.name_keyposes(lib, clip.id, [0.5])
+    keyposes.annotate_keyposes(lib, clip.id, [0.5])
     with pytest.raises(NotEnoughKeyposes):
         export(lib, clip.id, "csv", content="segments")
