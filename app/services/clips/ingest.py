@@ -27,6 +27,7 @@ from app.services.library.analysis_pool import AnalysisRequest
 from app.services.library.keypose_frames import named_keyposes
 from app.services.library.library import Library
 from app.services.library.stored_motion import motion_arrays
+from app.store import stage_times
 from app.store.clips import repository as stored
 from app.store.clips.record import ClipFacts, ClipRecord, ClipWarning
 from app.store.database.engine import Tx
@@ -84,6 +85,7 @@ def finish(tx: Tx, claimed: ClaimedJob, clip: ClipRecord, found: Analysis) -> No
         return
     arrays = {**found.arrays, **motion_arrays(found.motion), **named_keyposes(tx, clip, found)}
     outcomes.finish_ingest(tx, claimed.lease, clip.id, facts(found), arrays, settles_imports=False)
+    stage_times.add(tx, found.stage_seconds)
 
 
 def fail(
