@@ -124,7 +124,8 @@ def test_a_file_is_asked_by_and_never_stored(
     ready_library: Library, some_demo_clips: list[DemoClip], clip_of: FindClip
 ) -> None:
     kick = next(c for c in some_demo_clips if (c.person, c.task) == ("ada", "kick"))
-    query = PoseQuery(QuerySource(content=io.BytesIO(kick.content)), time=TIME)
+    source = QuerySource(content=io.BytesIO(kick.content))
+    query = PoseQuery(source, time=TIME, include_self=True)
     (first, *_) = find_pose(ready_library, query).items
     assert first.clip.id == clip_of("ada", "kick").id
     assert (first.distance, first.time) == (pytest.approx(0.0, abs=1e-6), pytest.approx(TIME))
@@ -210,3 +211,18 @@ def test_a_clip_that_is_not_there_or_not_ready(
     with pytest.raises(ClipNotReady):
         find_pose(lib, PoseQuery(QuerySource(made.clip.id), time=0.0))
     assert find_pose(lib, PoseQuery(positions=GOOD)).items == ()
+
+
+def test_a_stored_file_does_not_find_itself_unless_it_may(
+    ready_library: Library, clip_of: FindClip
+) -> None:
+    clip = clip_of("ada", "kick")
+    content = ready_library.store.files.path(clip.sha256).read_bytes()
+
+    def found(**more: Any) -> list[str]:
+        source = QuerySource(content=io.BytesIO(content))
+        query = PoseQuery(source, time=TIME, limit=1000, **more)
+        return [hit.clip.id for hit in find_pose(ready_library, query).items]
+
+    assert clip.id not in found()
+    assert found(include_self=True)[0] == clip.id
