@@ -23,6 +23,9 @@ from app.store.jobs.record import OPEN_STATES, JobState
 from app.store.stage_times import StageTime
 from app.store.store import Store
 
+UNKNOWN = "unknown"
+"""Code of a failure that has no problem. Kinedex stores none, but a label must be a text."""
+
 
 @dataclass(frozen=True, slots=True)
 class Census:
@@ -89,7 +92,10 @@ def _size(path: str) -> int:
 
 _OPEN = {state.value for state in OPEN_STATES}
 _NUMBER = func.count().label("number")
-_JOB_CODE, _CLIP_CODE = jobs.c.error["code"].as_string(), clips.c.error["code"].as_string()
+_CODE = "code"
+# Grouped by the name, because PostgreSQL sees two expressions with parameters as different.
+_JOB_CODE = func.coalesce(jobs.c.error[_CODE].as_string(), UNKNOWN).label(_CODE)
+_CLIP_CODE = func.coalesce(clips.c.error[_CODE].as_string(), UNKNOWN).label(_CODE)
 
 _JOBS = select(
     jobs.c.kind, jobs.c.state, _NUMBER, func.min(jobs.c.created_at).label("oldest")
@@ -97,11 +103,11 @@ _JOBS = select(
 _FAILED_JOBS = (
     select(jobs.c.kind, _JOB_CODE, _NUMBER)
     .where(jobs.c.state == JobState.FAILED.value)
-    .group_by(jobs.c.kind, _JOB_CODE)
+    .group_by(jobs.c.kind, _CODE)
 )
 _CLIPS = select(clips.c.state, _NUMBER).group_by(clips.c.state)
 _FAILED_CLIPS = (
-    select(_CLIP_CODE, _NUMBER).where(clips.c.state == ClipState.FAILED.value).group_by(_CLIP_CODE)
+    select(_CLIP_CODE, _NUMBER).where(clips.c.state == ClipState.FAILED.value).group_by(_CODE)
 )
 _MODELS = select(models.c.kind, func.max(models.c.created_at)).group_by(models.c.kind)
 

@@ -30,7 +30,7 @@ def test_an_empty_library_has_nothing_to_count(store: Store) -> None:
 
 
 def test_everything_is_counted(store: Store, add_clip: AddClip) -> None:
-    add_clip("walk", ready=True), add_clip("run", ready=True), add_clip("kick")
+    add_clip("walk", ready=True), add_clip("run", ready=True), add_clip("kick"), add_clip("bow")
     problem = Unreadable("no motion").as_problem()
     with store.write() as tx:
         for _ in range(3):
@@ -49,9 +49,10 @@ def test_everything_is_counted(store: Store, add_clip: AddClip) -> None:
         models.save(
             tx, "words", meta={}, arrays={"a": np.zeros(1)}, library_version=1, library_size=2
         )
+        tx.execute(update(clips_table).where(clips_table.c.name == "bow").values(state="failed"))
     found = census.count(store)
-    assert found.clips == {"ready": 2, "failed": 1}
-    assert found.failed_clips == {"unreadable": 1}
+    assert found.clips == {"ready": 2, "failed": 2}
+    assert found.failed_clips == {"unreadable": 1, census.UNKNOWN: 1}
     assert found.jobs == {
         ("import", "queued"): 2,
         ("import", "failed"): 1,
