@@ -9,7 +9,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 MAX_DETAIL = 2000
 MAX_LOCATION = 600
@@ -327,3 +327,11 @@ class ExtraNeeded(KinedexError):
     """This needs an optional part of Kinedex that is not installed."""
 
     code = "extra_needed"
+
+    @classmethod
+    def package(cls, name: str, noun: str) -> Self:
+        """The failure for a package that is not installed. noun: what needs it, in the plural."""
+        return cls(
+            f"{noun} need the package {name}, which is not installed. In a checkout run "
+            f"`make install`; otherwise run `pip install {name}` for the Python of Kinedex."
+        )

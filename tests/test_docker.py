@@ -18,13 +18,18 @@ import pytest
 import yaml
 
 from app.config import ENV_PREFIX, LOOPBACK_HOSTS, Settings, load_settings
-from tests.commands import refusal
+from tests.commands import code_lines, refusal
 from tests.live import Live
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCKERFILE = ROOT / "docker" / "Dockerfile"
 COMPOSE: dict[str, Any] = yaml.safe_load((ROOT / "docker" / "compose.yaml").read_text())
 SERVICES: dict[str, dict[str, Any]] = COMPOSE["services"]
+TLS: dict[str, Any] = yaml.safe_load((ROOT / "docker" / "compose.tls.yaml").read_text())
+PROJECT: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+TOOLS = {"cli"}
+"""Services that run one command and end."""
+_VARIABLE = re.compile(r"\$\{(\w+):-([^}]*)\}")
 NOBODY_ROOT = {"root", "0", "0:0", "root:root", ""}
 
 
@@ -156,6 +161,21 @@ def test_the_commands_exist() -> None:
         assert refusal(service["command"]) is None, name
     assert SERVICES["api"]["command"] == ["serve", "--no-worker"]
     assert SERVICES["worker"]["command"] == ["worker"]
+    for words in _commands_in_containers():
+        assert refusal(words) is None, words
+
+
+def _commands_in_containers() -> list[list[str]]:
+    """The words after `cli` or `api` of every `docker compose run` in the documentation."""
+    found = []
+    for name in ("README.md", "docker/README.md"):
+        for line in code_lines((ROOT / name).read_text()):
+            if line.startswith("docker compose ") and " run --rm " in line:
+                words = shlex.split(line)
+                if "--entrypoint" not in words:
+                    found.append(words[words.index("--rm") + 2 :])
+    assert len(found) > 4
+    return found
 
 
 def test_every_setting_exists_and_its_value_is_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -202,26 +222,100 @@ def test_services_share_the_data_and_build_one_image() -> None:
     assert (context / build["dockerfile"]).resolve() == DOCKERFILE
     shared = []
     for service in SERVICES.values():
-        mounts = dict(reversed(mount.split(":")[:2]) for mount in service["volumes"])
-        assert set(mounts.values()) <= COMPOSE["volumes"].keys()
+        mounts = _mounts(service)
+        named = {source for source in mounts.values() if not source.startswith("./")}
+        assert named <= COMPOSE["volumes"].keys()
         shared.append(mounts[service["environment"]["KINEDEX_DATA_DIR"]])
     assert len(set(shared)) == 1
 
 
-def test_the_worker_waits_for_the_api_and_has_no_check_of_it() -> None:
+def _mounts(service: dict[str, Any]) -> dict[str, str]:
+    """The source of each mount by its path in the container, with the defaults of variables."""
+    filled = [_VARIABLE.sub(r"\2", mount) for mount in service["volumes"]]
+    return {mount.split(":")[1]: mount.split(":")[0] for mount in filled}
+
+
+def test_only_commands_see_the_folders_of_the_machine() -> None:
+    mounts = _mounts(SERVICES["cli"])
+    assert (mounts["/import"], mounts["/backups"]) == ("./import", "./backups")
+    assert any(mount.endswith(":/import:ro") for mount in SERVICES["cli"]["volumes"])
+    for name in SERVICES.keys() - TOOLS:
+        assert set(_mounts(SERVICES[name])) == {"/data", "/tmp"}
+    assert SERVICES["cli"]["profiles"] == ["tools"]
+    for path in ("docker/import/a.bvh", "docker/backups/monday"):
+        assert _is_ignored(path)
+
+
+def test_the_worker_waits_for_the_api_and_has_its_own_check() -> None:
     worker = SERVICES["worker"]
     assert worker["depends_on"]["api"]["condition"] == "service_healthy"
-    assert worker["healthcheck"]["disable"] is True
+    kind, program, *words = worker["healthcheck"]["test"]
+    assert (kind, program) == ("CMD", "kinedex")
+    assert refusal(words) is None
+    assert words == ["worker", "--check"]
     assert "healthcheck" not in SERVICES["api"], "the image's own check applies"
 
 
+def test_the_image_has_labels_and_the_version_of_the_package() -> None:
+    labels = {
+        name.removeprefix("org.opencontainers.image."): value
+        for name, value in (part.split("=", 1) for part in shlex.split(_only(FINAL, "LABEL").rest))
+    }
+    assert labels["licenses"] == PROJECT["license"]
+    assert {"title", "description", "version", "revision"} <= labels.keys()
+    arguments = dict(step.rest.split("=") for step in FINAL if step.word == "ARG")
+    assert arguments["VERSION"] == PROJECT["version"]
+    assert set(SERVICES["api"]["build"]["args"]) == arguments.keys()
+    assert SERVICES["api"]["image"] == f"kinedex:${{TAG:-{PROJECT['version']}}}"
+
+
+def test_the_memory_and_the_logs_of_services_are_limited() -> None:
+    for service in [*SERVICES.values(), *TLS["services"].values()]:
+        size = _VARIABLE.sub(r"\2", service["mem_limit"])
+        assert re.fullmatch(r"\d+[mg]", size)
+        assert set(service["logging"]["options"]) == {"max-size", "max-file"}
+
+
+def test_variables_are_no_settings_and_are_documented() -> None:
+    """Kinedex refuses to run with unknown settings, so variables need other names."""
+    documented = (ROOT / "docker" / "README.md").read_text()
+    for name in ("compose.yaml", "compose.tls.yaml"):
+        for variable in re.findall(r"\$\{(\w+)", (ROOT / "docker" / name).read_text()):
+            assert not variable.startswith(ENV_PREFIX)
+            assert f"`{variable}`" in documented
+
+
+def test_caddy_sends_requests_to_the_port_of_the_api() -> None:
+    caddy = TLS["services"]["caddy"]
+    text = (ROOT / "docker" / "Caddyfile").read_text()
+    assert re.findall(r"reverse_proxy (\S+)", text) == [f"api:{_environment()['KINEDEX_PORT']}"]
+    assert set(re.findall(r"\{\$(\w+)\}", text)) == caddy["environment"].keys()
+    assert text.count("{") == text.count("}")
+    assert "./Caddyfile:/etc/caddy/Caddyfile:ro" in caddy["volumes"]
+    assert {"80:80", "443:443"} <= set(caddy["ports"])
+    assert caddy["depends_on"].keys() <= SERVICES.keys()
+    assert _mounts(caddy)["/data"] in TLS["volumes"]
+
+
+def test_keys_of_services_are_those_of_the_compose_specification() -> None:
+    known = {
+        *("build", "cap_add", "cap_drop", "command", "depends_on", "environment", "healthcheck"),
+        *("image", "logging", "mem_limit", "ports", "profiles", "read_only", "restart"),
+        *("security_opt", "volumes"),
+    }
+    for file in (COMPOSE, TLS):
+        assert {key for key in file if not key.startswith("x-")} <= {"name", "services", "volumes"}
+        for name, service in file["services"].items():
+            assert service.keys() <= known, name
+
+
 def test_services_have_no_more_rights_than_they_need() -> None:
-    for service in SERVICES.values():
+    for name, service in SERVICES.items():
         assert service["read_only"] is True
         assert service["cap_drop"] == ["ALL"]
         assert "no-new-privileges:true" in service["security_opt"]
         assert "privileged" not in service
-        assert service["restart"] == "unless-stopped"
+        assert service["restart"] == ("no" if name in TOOLS else "unless-stopped")
         # A read-only root needs a place for temporary files.
         assert any(mount.endswith(":/tmp") for mount in service["volumes"])
 

@@ -15,8 +15,8 @@ symbol_means (K, 26), symbol_variances (K, 26) and symbol_transitions (K, K).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -36,6 +36,7 @@ from app.analysis.keyposes.keyposes import T1, T2, find_keyposes
 from app.analysis.rhythm.onsets import Onsets
 from app.analysis.rhythm.rhythm import NO_RHYTHM_INPUT, RhythmInput, find_rhythm, rhythm_arrays
 from app.analysis.segments.keypose_arrays import keypose_arrays
+from app.analysis.stage_times import StageTimes
 from app.analysis.symbols.channels import symbol_features, symbol_statistics
 from app.analysis.symbols.symbol import describe_symbol
 from app.motion.frame.body_frame import BodyTrack, body_track
@@ -55,12 +56,14 @@ class Analysis:
 
     audio_offset: the time of the motion, in seconds, at which its audio recording begins; None
     without a recording or if the time is unknown. cautions: doubts about the recording.
+    stage_seconds: how long each stage took, for the operator; it is not part of the result.
     """
 
     motion: Motion
     arrays: dict[str, NDArray[Any]]
     audio_offset: float | None = None
     cautions: tuple[Caution, ...] = ()
+    stage_seconds: Mapping[str, float] = field(default_factory=dict, compare=False)
 
 
 def analyze(
@@ -70,26 +73,33 @@ def analyze(
     t2: float = T2,
     rhythm_input: RhythmInput = NO_RHYTHM_INPUT,
     onsets: Onsets | None = None,
+    times: StageTimes | None = None,
 ) -> Analysis:
     """Compute all arrays of `motion`.
 
     t1, t2: the thresholds of its keyposes (see `keyposes`). rhythm_input: what a client says
-    about its beats. onsets: those of its audio recording, None without one. The result is
-    deterministic. Raises TooShort or NotHuman.
+    about its beats. onsets: those of its audio recording, None without one. times: measures the
+    stages. The result is deterministic. Raises TooShort or NotHuman.
     """
-    track = body_track(motion)
-    parts = _Parts(motion, track)
-    arrays: dict[str, NDArray[Any]] = {**_for_search(parts), **describe_symbol(parts.channels)}
-    rms_energies = energies(track)
-    rhythm = find_rhythm(track, rhythm_input, onsets, rms_energies)
-    arrays |= rhythm_arrays(rhythm)
-    keyposes = find_keyposes(
-        track, t1=t1, t2=t2, beats=rhythm.beats, rms_energies=rms_energies
-    ).frames
-    arrays["pose_cover"] = pose_cover(arrays["role_positions"], keyposes)
-    arrays |= keypose_arrays(keyposes, arrays["features_10hz"])
+    times = times or StageTimes()
+    with times.stage("describe"):
+        track = body_track(motion)
+        parts = _Parts(motion, track)
+        arrays: dict[str, NDArray[Any]] = {**_for_search(parts)}
+    with times.stage("symbol"):
+        arrays |= describe_symbol(parts.channels)
+    with times.stage("rhythm"):
+        rms_energies = energies(track)
+        rhythm = find_rhythm(track, rhythm_input, onsets, rms_energies)
+        arrays |= rhythm_arrays(rhythm)
+    with times.stage("keyposes"):
+        keyposes = find_keyposes(
+            track, t1=t1, t2=t2, beats=rhythm.beats, rms_energies=rms_energies
+        ).frames
+        arrays["pose_cover"] = pose_cover(arrays["role_positions"], keyposes)
+        arrays |= keypose_arrays(keyposes, arrays["features_10hz"])
     offset = None if rhythm.offset is None else rhythm.offset.seconds
-    return Analysis(motion, arrays, offset, rhythm.cautions)
+    return Analysis(motion, arrays, offset, rhythm.cautions, times.seconds)
 
 
 def describe_for_search(motion: Motion, names: Collection[str] | None = None) -> Analysis:

@@ -25,13 +25,14 @@ def backup(
     """Copy the library into a new folder; the library may be in use.
 
     The copy is a data directory: to restore it, start Kinedex with KINEDEX_DATA_DIR set to it, or
-    to a copy of it. It contains everything: also the hashed API keys, and clips that you delete
-    from the library later.
+    to a copy of it. The database may still have the schema of an earlier version, as before an
+    upgrade. The copy contains everything: also the hashed API keys, and clips that you delete from
+    the library later.
     """
     from app.store.upkeep.backup import back_up
 
     _refuse_inside(settings_of(context).data_dir, path)
-    with open_store(context) as store, exit_on_sigterm(), progress_bar() as bar:
+    with open_store(context, for_copy=True) as store, exit_on_sigterm(), progress_bar() as bar:
         task = bar.add_task("copying", total=None)
         copy = back_up(
             store, path, lambda done, total: bar.update(task, completed=done, total=total)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from app.cli.options import FilterJson
+from app.cli.options import FilterJson, IncludeSelf
 from app.cli.output import AsJson, print_json, print_table
 from app.cli.query_source import FrameRate, Query, Skeleton, Stack, Unit, source_of
 from app.cli.settings import open_library
@@ -53,6 +53,7 @@ def search(
     end: Annotated[float | None, typer.Option(help="The end of that part in seconds.")] = None,
     limit: Annotated[int, typer.Option(help="Largest number of hits, 1 to 1000.")] = 10,
     filter_json: FilterJson = None,
+    include_self: IncludeSelf = False,
     skeleton: Skeleton = None,
     frame_rate: FrameRate = None,
     unit: Unit = None,
@@ -82,7 +83,9 @@ def search(
                 stack=stack,
                 advice=ADVICE,
             ) as source:
-                motion_query = MotionQuery(source, method, limit, fields, scope, segment)
+                motion_query = MotionQuery(
+                    source, method, limit, fields, scope, segment, include_self
+                )
                 hits = find.find_motion(lib, motion_query)
     _print_hits(hits, as_json, by_words=bool(words), with_times=scope != "clips")
 

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from app.cli.find import filter_of
-from app.cli.options import FilterJson
+from app.cli.options import FilterJson, IncludeSelf
 from app.cli.output import AsJson, print_json, print_table
 from app.cli.query_source import FrameRate, Skeleton, Stack, Unit, source_of
 from app.cli.settings import open_library
@@ -37,6 +37,7 @@ def search_pose(
     ] = MatchesPerClip.BEST,
     limit: Annotated[int, typer.Option(help="Largest number of hits, 1 to 1000.")] = 10,
     filter_json: FilterJson = None,
+    include_self: IncludeSelf = False,
     skeleton: Skeleton = None,
     frame_rate: FrameRate = None,
     unit: Unit = None,
@@ -58,7 +59,9 @@ def search_pose(
             with source_of(
                 query, skeleton=skeleton, frame_rate=frame_rate, unit=unit, stack=stack
             ) as source:
-                hits = find_pose(lib, PoseQuery(source, time, None, places, limit, fields))
+                hits = find_pose(
+                    lib, PoseQuery(source, time, None, places, limit, fields, include_self)
+                )
     if as_json:
         from app.api.schemas.pose import PoseHits
 

@@ -12,6 +12,9 @@ FilterJson = Annotated[
         "--filter", help='JSON, for example {"task": ["walk", "run"], "not_source": "my studio"}.'
     ),
 ]
+IncludeSelf = Annotated[
+    bool, typer.Option("--include-self", help="Let the query itself be a hit, if it is stored.")
+]
 PictureFormat = Annotated[
     str, typer.Option(help="Format of the pictures in a folder: svg, png or pdf.")
 ]

@@ -19,6 +19,9 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 MAX_WIDTH = 100
 """Characters in a line of the output for people."""
 
+SMALLEST = 0.0005
+"""Smaller positive numbers have no digit other than 0 among three decimals."""
+
 console = Console()
 if not (console.is_terminal or "COLUMNS" in os.environ):
     console.width = MAX_WIDTH  # in a file or a pipe, rich would cut names at 80 characters
@@ -58,11 +61,14 @@ def progress_bar() -> Progress:
 
 
 def _printable(cell: object) -> str:
-    """A cell as text: "-" for None, three decimals for floats, no control characters."""
+    """A cell as text: "-" for None, three decimals for floats, no control characters.
+
+    A float that would look like zero is "<0.001".
+    """
     if cell is None:
         return "-"
     if isinstance(cell, float):
-        return f"{cell:.3f}"
+        return "<0.001" if 0 < cell < SMALLEST else f"{cell:.3f}"
     # other people choose the names; a control character could change the terminal's state
     return "".join(
         c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in str(cell)

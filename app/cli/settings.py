@@ -29,10 +29,11 @@ def settings_of(context: typer.Context, **flags: Any) -> Settings:
 
 
 @contextmanager
-def open_store(context: typer.Context) -> Iterator[Store]:
+def open_store(context: typer.Context, *, for_copy: bool = False) -> Iterator[Store]:
     """Open the store of an existing library, and close it at the end. Nothing is created.
 
-    Raises ConfigurationError, LibraryMismatch, DatabaseOutOfDate, StorageError.
+    for_copy: the database may have the schema of an earlier version. Raises ConfigurationError,
+    LibraryMismatch, DatabaseOutOfDate, StorageError.
     """
     from app.store import identity
     from app.store.store import Store
@@ -40,7 +41,8 @@ def open_store(context: typer.Context) -> Iterator[Store]:
     settings = settings_of(context)
     if not identity.is_database_there(settings.database):
         raise ConfigurationError(f"There is no library in {settings.data_dir}.")
-    library_id = identity.check(settings.database, settings.files_dir)
+    check = identity.check_copyable if for_copy else identity.check
+    library_id = check(settings.database, settings.files_dir)
     store = Store.open(settings.database, settings.files_dir, library_id)
     try:
         yield store

@@ -56,6 +56,24 @@ def check(database_url: str, files_dir: Path) -> str:
     return _checked(database_url, files_dir, writes=False)
 
 
+def check_copyable(database_url: str, files_dir: Path) -> str | None:
+    """As `check`, for a copy before an upgrade: the database may have an older schema.
+
+    Returns None if that schema has no id of the library yet.
+    """
+    schema.check_known(database_url)
+    database = Database(database_url)
+    try:
+        with database.read() as tx:
+            ours = library.library_id_if_any(tx)
+            if _read_id(files_dir) is None:
+                _refuse_foreign_files(tx, FileStore(files_dir), database_url)
+    finally:
+        database.close()
+    _refuse_other_library(ours, database_url, files_dir)
+    return ours
+
+
 def refuse_files_without_database(database_url: str, files_dir: Path) -> None:
     """Raises LibraryMismatch if there is no database, but the folder already holds files."""
     if not is_database_there(database_url):
@@ -114,12 +132,17 @@ def _checked(database_url: str, files_dir: Path, *, writes: bool) -> str:
                     _write_id(files_dir, ours)
     finally:
         database.close()
+    _refuse_other_library(ours, database_url, files_dir)
+    return ours
+
+
+def _refuse_other_library(ours: str | None, database_url: str, files_dir: Path) -> None:
     theirs = _read_id(files_dir)
     if theirs is None or theirs == ours:
-        return ours
+        return
     raise LibraryMismatch(
-        f"{_database_name(database_url)} is the database of the library {ours}, but {files_dir} is "
-        f"the folder of files of the library {theirs}. {WHAT_TO_DO}"
+        f"{_database_name(database_url)} is the database of the library {ours or 'without an id'}, "
+        f"but {files_dir} is the folder of files of the library {theirs}. {WHAT_TO_DO}"
     )
 
 
@@ -128,7 +151,7 @@ def _refuse_foreign_files(tx: Tx, files: FileStore, database_url: str) -> None:
 
     It belongs to the database if it holds at least half of the files that the database names.
     """
-    needed = references.referenced(tx)
+    needed = references.referenced_in_any_schema(tx)
     present = sum(1 for sha256 in needed if files.has(sha256))
     has_files = next(iter(files), None) is not None
     if not needed and not has_files:

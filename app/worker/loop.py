@@ -1,8 +1,9 @@
 """The worker: it claims a job, starts it, sends heartbeats while it runs, and settles it.
 
-One thread does all of this. So a worker that hangs sends no heartbeats, and its jobs go to another
-worker. The jobs of a killed worker go back into the queue when another worker sees that it is
-dead. A worker that gets a signal to stop puts its jobs back; that does not count as an attempt.
+One thread does all of this. So a worker that hangs sends no heartbeats, its jobs go to another
+worker, and `kinedex worker --check` reports it. The jobs of a killed worker go back into the queue
+when another worker sees that it is dead. A worker that gets a signal to stop puts its jobs back;
+that does not count as an attempt.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ from app.store.database.engine import Tx
 from app.store.jobs import leases, outcomes, owners, queue
 from app.store.jobs.abandoned_jobs import Watch
 from app.store.jobs.record import ClaimedJob, JobKind
+from app.store.workers import Heartbeat
 from app.worker.executors import JobExecutors
 from app.worker.expiry import Expiry
 from app.worker.running import RunningJob
@@ -86,6 +88,7 @@ class Worker:
         self.owner = owners.new_owner("worker")
         self.executors = JobExecutors(lib)
         self._running: list[RunningJob] = []
+        self._heartbeat = Heartbeat(settings.files_dir, self.owner, settings.job_heartbeat_s)
         self._last_beat = time.monotonic()
         self._watch = Watch(self.owner, settings.job_lease_s)
         self._watch_s = min(settings.job_heartbeat_s, settings.job_lease_s / WATCHES_PER_LEASE)
@@ -105,6 +108,8 @@ class Worker:
                     if until is not None and until(self.lib):
                         return
                     self._request_fit_if_due()
+                # A worker whose store fails sends none: it does no work.
+                self._heartbeat.beat_if_due()
             except StorageError:
                 _log.exception("the store failed; trying again")
                 stop.wait(STORE_PAUSE_S)
@@ -121,6 +126,7 @@ class Worker:
                 outcomes.give_back(tx, running.claimed)
         self._running = []
         self.executors.close()
+        self._heartbeat.end()
 
     @property
     def running(self) -> tuple[RunningJob, ...]:

@@ -182,6 +182,17 @@ def test_if_keys_exist_every_call_needs_one(locked: tuple[Live, dict[KeyRole, st
     assert not any(secret in live.log.read_text() for secret in secrets.values())
 
 
+def test_the_log_names_the_client_and_the_key(locked: tuple[Live, dict[KeyRole, str]]) -> None:
+    live, secrets = locked
+    secret = secrets[KeyRole.WRITE]
+    with live.client(headers={"X-API-Key": secret}) as client:
+        found = client.get("/v1/clips/named-in-the-log")
+        assert_problem(found, 404, "clip_not_found")
+    lines = [json.loads(line) for line in live.log.read_text().splitlines()]
+    (line,) = [line for line in lines if line.get("path") == "/v1/clips/named-in-the-log"]
+    assert (line["client"], line["key_id"]) == ("127.0.0.1", secret.split("_")[1])
+
+
 def test_roles_allow_what_they_say(locked: tuple[Live, dict[KeyRole, str]]) -> None:
     live, secrets = locked
     for role in KeyRole:

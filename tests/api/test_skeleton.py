@@ -25,8 +25,11 @@ def test_a_pair_is_one_clip_and_one_query(demo_service: Live) -> None:
         assert (clip["state"], clip["format"], clip["frame_rate"]) == ("ready", "amc", 120)
         assert clip["declared_frame_rate"] is None
         assert client.post("/v1/clips", files=pair()).status_code == 200
-        hits = client.post("/v1/search/motion", files=pair(), data={"limit": "1"}).json()
-        assert hits["items"][0]["clip"]["id"] == clip["id"]
+        for include_self in ("true", "false"):
+            asked = {"limit": "1", "include_self": include_self}
+            hits = client.post("/v1/search/motion", files=pair(), data=asked).json()
+            is_itself = hits["items"][0]["clip"]["id"] == clip["id"]
+            assert is_itself == (include_self == "true")
         recognized = client.post("/v1/recognize", files=pair())
         assert recognized.status_code == 200, recognized.text
         assert client.delete(f"/v1/clips/{clip['id']}").status_code == 204

@@ -18,16 +18,20 @@ def _file(folder: Path, task: str) -> str:
 
 
 def test_a_file_finds_itself_and_similar_clips(kinedex: Kinedex, folder: Path) -> None:
-    found = kinedex("search", _file(folder, "kick"), "--limit", "3", "--json").json()
+    asked = ("search", _file(folder, "kick"), "--limit", "3", "--json")
+    found = kinedex(*asked, "--include-self").json()
     assert MotionHits.model_validate(found).model_dump(mode="json") == found
     assert found["items"][0]["distance"] == 0.0
     assert [hit["clip"]["task"] for hit in found["items"]] == ["kick"] * 3
+    others = [hit["clip"]["id"] for hit in kinedex(*asked).json()["items"]]
+    assert others[:2] == [hit["clip"]["id"] for hit in found["items"][1:]]
 
 
 def test_a_stored_clip_is_searched_with_a_method_and_a_filter(
     kinedex: Kinedex, folder: Path
 ) -> None:
-    found = kinedex("search", _file(folder, "kick"), "--limit", "1", "--json").json()
+    asked = ("search", _file(folder, "kick"), "--include-self", "--limit", "1", "--json")
+    found = kinedex(*asked).json()
     clip = found["items"][0]["clip"]["id"]
     person = '{"person": "bruno"}'
     hits = kinedex("search", clip, "--method", "dtw", "--filter", person, "--json").json()
@@ -48,7 +52,7 @@ def test_a_file_is_searched_with_learned_metrics(kinedex: Kinedex, folder: Path)
 
 
 def test_hits_are_printed_as_a_table(kinedex: Kinedex, folder: Path) -> None:
-    ended = kinedex("search", _file(folder, "walk"), "--limit", "2")
+    ended = kinedex("search", _file(folder, "walk"), "--include-self", "--limit", "2")
     assert ended.code == 0
     lines = ended.out.splitlines()
     assert lines[0].split() == ["rank", "score", "name", "person", "task", "id"]
@@ -58,7 +62,7 @@ def test_hits_are_printed_as_a_table(kinedex: Kinedex, folder: Path) -> None:
 
 def test_parts_of_clips_are_found_with_their_bounds(kinedex: Kinedex, folder: Path) -> None:
     part = ("search", _file(folder, "kick"), "--start", "0.5", "--end", "2.0")
-    arguments = (*part, "--scope", "windows", "--limit", "2")
+    arguments = (*part, "--scope", "windows", "--limit", "2", "--include-self")
     found = kinedex(*arguments, "--json").json()
     assert MotionHits.model_validate(found).model_dump(mode="json") == found
     first = found["items"][0]

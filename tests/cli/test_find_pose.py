@@ -11,13 +11,18 @@ from tests.cli.conftest import Kinedex
 
 def test_a_file_finds_its_pose_at_its_time(kinedex: Kinedex, folder: Path) -> None:
     file = str(folder / "ada" / "kick_01.bvh")
-    found = kinedex("search-pose", file, "--time", "0.8", "--limit", "3", "--json").json()
+    asked = ("search-pose", file, "--time", "0.8", "--limit", "3", "--json")
+    found = kinedex(*asked, "--include-self").json()
     assert PoseHits.model_validate(found).model_dump(mode="json") == found
     first = found["items"][0]
     assert (first["clip"]["name"], first["clip"]["person"]) == ("kick_01", "ada")
     assert abs(first["time"] - 0.8) < 0.02
     again = kinedex("search-pose", first["clip"]["id"], "--time", "0.8", "--json").json()
     assert again["items"][0]["clip"]["id"] == found["items"][1]["clip"]["id"]
+    without_it = kinedex(*asked).json()["items"]
+    assert [hit["clip"]["id"] for hit in without_it[:2]] == [
+        hit["clip"]["id"] for hit in again["items"][:2]
+    ]
 
 
 def test_positions_of_a_file_and_a_table(kinedex: Kinedex, tmp_path: Path) -> None:

@@ -15,6 +15,17 @@ def test_names_are_printed_unchanged(capsys: pytest.CaptureFixture[str], name: s
     assert "0.500" in printed
 
 
+@pytest.mark.parametrize(
+    ("number", "shown"),
+    [(3e-13, "<0.001"), (0.000499, "<0.001"), (0.0005, "0.001"), (0.0, "0.000"), (-0.1, "-0.100")],
+)
+def test_small_numbers_do_not_look_like_zero(
+    capsys: pytest.CaptureFixture[str], number: float, shown: str
+) -> None:
+    print_table(("score",), [(number,)])
+    assert capsys.readouterr().out.split() == ["score", shown]
+
+
 def test_control_characters_do_not_reach_the_terminal(capsys: pytest.CaptureFixture[str]) -> None:
     print_table(("name",), [("a\x1b]0;title\x07\x1b[31m\rb",)])
     printed = capsys.readouterr().out

@@ -14,7 +14,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.api.failures.handlers import answer_failure
 from app.api.failures.problems import NotReadyYet
-from app.api.guard.callers import Caller, find_caller
+from app.api.guard.callers import find_caller
 from app.api.guard.own_address import refuse_other_sites
 from app.api.guard.paths import path_of
 from app.errors import KinedexError
@@ -41,22 +41,22 @@ class AccessCheck:
             await self.app(scope, receive, send)
             return
         try:
-            caller = await self._admit(scope)
+            await self._admit(scope)
         except KinedexError as refusal:
             answer = await answer_failure(Request(scope), refusal)
             await answer(scope, receive, send)
             return
-        scope.setdefault("state", {})["caller"] = caller
         await self.app(scope, receive, send)
 
-    async def _admit(self, scope: Scope) -> Caller:
+    async def _admit(self, scope: Scope) -> None:
         library: Library | None = scope["app"].state.library
         if library is None:
             raise NotReadyYet
         headers = Headers(scope=scope)
         caller = await to_thread.run_sync(find_caller, library, headers, limiter=self._threads)
+        # For the log, which also names the key of a call that is refused.
+        scope.setdefault("state", {})["caller"] = caller
         if caller.is_free:
             refuse_other_sites(scope)
         if scope["method"] not in WITHOUT_BODY:
             caller.require_key()
-        return caller

@@ -86,5 +86,17 @@ Roles = Annotated[
 """Joint names by joint role."""
 Seconds = Annotated[float, Field(ge=0, le=1e6)]
 
+PROBABILITY_DIGITS = 4
+"""Decimals of a probability. No calibration on held-out clips can justify more."""
+ROUNDED = (
+    f"Rounded to {PROBABILITY_DIGITS} decimals, because the calibration is not more exact. 0 means "
+    "very unlikely, not impossible."
+)
+"""The end of the description of a Probability."""
+Probability = Annotated[
+    float, Field(ge=0, le=1), AfterValidator(lambda value: round(value, PROBABILITY_DIGITS))
+]
+"""A probability in an answer, with ROUNDED in its description."""
+
 Fps = Annotated[float, Field(ge=MIN_FPS, le=MAX_FPS)]
 """Frames per second of a resampled motion."""

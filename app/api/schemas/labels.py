@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing, PartOfName, Words
+from app.api.schemas.base import (
+    ROUNDED,
+    Cursor,
+    Incoming,
+    Limit,
+    Outgoing,
+    PartOfName,
+    Probability,
+    Words,
+)
 
 
 class NamedCount(Outgoing):
@@ -47,7 +56,7 @@ class LabelPage(Incoming):
 
 WORD_SCORE = (
     "Probability that a clip with this motion carries the word. It is calibrated on held-out "
-    "clips, so that scores of different clips and words can be compared."
+    f"clips, so that scores of different clips and words can be compared. {ROUNDED}"
 )
 
 
@@ -55,7 +64,7 @@ class WordSuggestion(Outgoing):
     """A word that the model would give a clip."""
 
     word: str
-    score: float = Field(ge=0, le=1, description=WORD_SCORE)
+    score: Probability = Field(description=WORD_SCORE)
 
 
 class WordSuggestions(Outgoing):

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import ConfigDict, Field
 
-from app.api.schemas.base import Label, Outgoing
+from app.api.schemas.base import ROUNDED, Label, Outgoing, Probability
 from app.api.schemas.labels import WORD_SCORE
 from app.api.schemas.query_source import ClipId, QueryFields, QueryForm
 from app.models.recognition.answers import Answer as FoundAnswer
@@ -55,7 +55,9 @@ class Candidate(Outgoing):
     """A possible label."""
 
     label: str
-    score: float = Field(ge=0, le=1)
+    score: Probability = Field(
+        description=f"Share of belief in this label; all of them sum to at most 1. {ROUNDED}"
+    )
 
 
 class Answer(Outgoing):
@@ -65,7 +67,10 @@ class Answer(Outgoing):
         description="Null if the library does not know the person or the task."
     )
     known: bool
-    score: float = Field(ge=0, le=1)
+    score: Probability = Field(
+        description="Share of belief in `label`, or in the first candidate if `label` is null. "
+        f"{ROUNDED}"
+    )
     candidates: list[Candidate]
 
     @classmethod
@@ -83,7 +88,7 @@ class WordScore(Outgoing):
     """A word that describes the motion."""
 
     word: str
-    score: float = Field(ge=0, le=1, description=WORD_SCORE)
+    score: Probability = Field(description=WORD_SCORE)
 
 
 class Recognition(Outgoing):

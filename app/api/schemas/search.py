@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field, Json
 
-from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing, Seconds
+from app.api.schemas.base import ROUNDED, Cursor, Incoming, Limit, Outgoing, Probability, Seconds
 from app.api.schemas.clips import Clip
 from app.api.schemas.filters import Filter
 from app.api.schemas.query_source import ClipId, QueryFields, QueryForm
@@ -30,8 +30,9 @@ class _MotionOptions(QueryFields):
     )
     include_self: bool = Field(
         False,
-        description="Whether the query clip may be a hit. With scope windows and segments: whether "
-        "parts that overlap the query may be hits.",
+        description="Whether the query clip may be a hit. A file that is stored already counts as "
+        "its clip. With scope windows and segments: whether parts that overlap the query may be "
+        "hits.",
     )
     filter: Filter | None = None
     cursor: Cursor | None = None
@@ -171,14 +172,12 @@ class MotionHits(Outgoing):
 class WordHit(Hit):
     """One hit of a search by words."""
 
-    score: float = Field(
-        ge=0,
-        le=1,
+    score: Probability = Field(
         description=(
             "Probability that the clip carries all requested words. It is calibrated on "
             "held-out clips, so that scores of different queries can be compared. If a word is "
             "replaced by others because no clip carries it, the most probable of them counts, "
-            "reduced by the distance between the two meanings."
+            f"reduced by the distance between the two meanings. {ROUNDED}"
         ),
     )
     distance: float = Field(

@@ -74,9 +74,7 @@ def need_plots() -> None:
     try:
         import matplotlib.figure  # noqa: F401 - takes half a second; few need it
     except ImportError as missing:
-        raise ExtraNeeded(
-            "Pictures need matplotlib, which is not installed: pip install 'kinedex[plots]'"
-        ) from missing
+        raise ExtraNeeded.package("matplotlib", "Pictures") from missing
 
 
 def rendered(draw: Callable[[Figure], None], inches: tuple[float, float], form: Format) -> bytes:

@@ -105,9 +105,7 @@ def _library() -> Any:
     try:
         import soundfile
     except ImportError as missing:
-        raise ExtraNeeded(
-            "Reading recordings needs soundfile: pip install 'kinedex[audio]'."
-        ) from missing
+        raise ExtraNeeded.package("soundfile", "Recordings") from missing
     except OSError as missing:  # the wheel without a libsndfile for this machine
         raise ExtraNeeded(f"soundfile cannot load libsndfile: {missing}.") from missing
     return soundfile

@@ -27,6 +27,7 @@ from app.services.library.analysis_pool import AnalysisRequest
 from app.services.library.keypose_frames import annotated_keypose_arrays
 from app.services.library.library import Library
 from app.services.library.stored_motion import motion_arrays
+from app.store import stage_times
 from app.store.clips import repository as stored
 from app.store.clips.record import ClipFacts, ClipRecord, ClipWarning
 from app.store.database.engine import Tx
@@ -90,6 +91,7 @@ def finish(tx: Tx, claimed: ClaimedJob, clip: ClipRecord, analysis: Analysis) ->
     outcomes.finish_ingest(
         tx, claimed.lease, clip.id, facts(analysis), arrays, settles_imports=False
     )
+    stage_times.add(tx, analysis.stage_seconds)
 
 
 def fail(

@@ -52,17 +52,14 @@ class PoseQuery:
 def find_pose(lib: Library, query: PoseQuery) -> Hits:
     """Clips ranked by the distance of their nearest pose to the queried pose.
 
-    The query clip is left out unless `include_self`. Each hit has the time of its pose. Raises
+    The query clip is left out unless `include_self`, also if the query is its file. Raises
     BadField, ClipNotFound, ClipNotReady, and BadContent for a file that cannot be used.
     """
     began = time.perf_counter()
     clip_filter, places = as_filter(query.filter), _places(query.places)
     fields.limit(query.limit)
     version = lib.poses.catch_up(lib.store)
-    pose = _pose(lib, query)
-    exclude: frozenset[str] = frozenset()
-    if query.source is not None:
-        exclude = query.source.excluded_clips(include_self=query.include_self)
+    pose, exclude = _pose(lib, query)
     question = cursors.digest("pose", pose.tobytes().hex(), places, clip_filter, sorted(exclude))
     paging = Paging.at(query.cursor, question)
     _, rows = lib.poses.state
@@ -74,10 +71,10 @@ def find_pose(lib: Library, query: PoseQuery) -> Hits:
     return Hits(METHOD, milliseconds_since(began), version, page.items, page.next)
 
 
-def _pose(lib: Library, query: PoseQuery) -> FloatArray:
-    """(36,) vector of the queried pose."""
+def _pose(lib: Library, query: PoseQuery) -> tuple[FloatArray, frozenset[str]]:
+    """(36,) vector of the queried pose, and the clips that must not be hits."""
     if query.positions is not None:
-        return _given_pose(query, query.positions)
+        return _given_pose(query, query.positions), frozenset()
     if query.source is None:
         raise fields.bad_field("positions", "give a clip_id and a time, or 13 positions")
     if query.time is None:
@@ -85,7 +82,8 @@ def _pose(lib: Library, query: PoseQuery) -> FloatArray:
     described = describe(lib, query.source, (POSITIONS,))
     positions = described.arrays[POSITIONS]
     duration = described.clip.duration if described.clip is not None else None
-    return pose_at(positions, query.time, duration or len(positions) / ANALYSIS_RATE)
+    pose = pose_at(positions, query.time, duration or len(positions) / ANALYSIS_RATE)
+    return pose, described.excluded_clips(include_self=query.include_self)
 
 
 def _given_pose(query: PoseQuery, positions: Sequence[Sequence[Any]]) -> FloatArray:

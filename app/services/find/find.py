@@ -92,7 +92,8 @@ def _search(query: MotionQuery, method: Method) -> _Search:
 def _by_example(
     lib: Library, query: MotionQuery, method: Method, clip_filter: ClipFilter
 ) -> HitPage:
-    arrays = describe(lib, query.source, _NAMES).arrays
+    described = describe(lib, query.source, _NAMES)
+    arrays = described.arrays
     # An upload has no id: a cursor recognizes it by its descriptors.
     content = hashlib.sha256(arrays[FEATURES].tobytes()).hexdigest()
     question = cursors.digest(
@@ -104,7 +105,7 @@ def _by_example(
         arrays,
         method,
         clip_filter,
-        query.source.excluded_clips(include_self=query.include_self),
+        described.excluded_clips(include_self=query.include_self),
         partial(lib.arrays.get_many, lib.store),
         paging.anchor,
     )
@@ -114,9 +115,9 @@ def _by_example(
 def _by_metric(
     lib: Library, query: MotionQuery, method: Method, clip_filter: ClipFilter
 ) -> HitPage:
-    arrays = describe(lib, query.source, INPUTS).arrays
-    exclude = query.source.excluded_clips(include_self=query.include_self)
-    found = rank_by_metric(lib, arrays, method, clip_filter, exclude)
+    described = describe(lib, query.source, INPUTS)
+    exclude = described.excluded_clips(include_self=query.include_self)
+    found = rank_by_metric(lib, described.arrays, method, clip_filter, exclude)
     question = cursors.digest(
         query.source.clip_id, found.digest, method, clip_filter, query.include_self, found.model
     )

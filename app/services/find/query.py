@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -19,7 +20,8 @@ from app.services.library.analysis_pool import AnalysisRequest
 from app.services.library.library import Library
 from app.services.library.ready_clips import descriptors_of, read_ready_clip
 from app.services.library.stored_motion import load_motion
-from app.store.clips.record import ClipRecord
+from app.store.clips.record import ClipRecord, content_key
+from app.store.clips.repository import find_by_content
 from app.store.files.files import Readable
 
 Arrays = Mapping[str, FloatArray]
@@ -29,13 +31,15 @@ Arrays = Mapping[str, FloatArray]
 class QueryDescriptors:
     """The descriptors of a query.
 
-    arrays: descriptors by name, see `app.analysis.array_shapes`; clip: the queried clip, None for
-    an upload.
+    arrays: descriptors by name, see `app.analysis.array_shapes`; clip: the stored clip, if the
+    query is one; stored_as: the clip that was made from the same file, if the query is an upload
+    that the library already has.
     """
 
     source: QuerySource
     arrays: Arrays
     clip: ClipRecord | None
+    stored_as: ClipRecord | None = None
 
     @property
     def seconds(self) -> float:
@@ -50,11 +54,20 @@ class QueryDescriptors:
 
     @property
     def interval(self) -> ExcludedInterval | None:
-        """The selected part of a stored clip, in seconds; None for an upload."""
-        if self.clip is None:
+        """The selected part of a stored clip, in seconds; None for a new motion."""
+        if self._itself is None:
             return None
         start = self.source.start or 0.0
-        return ExcludedInterval(self.clip.id, start, start + self.seconds)
+        return ExcludedInterval(self._itself.id, start, start + self.seconds)
+
+    def excluded_clips(self, *, include_self: bool) -> frozenset[str]:
+        """Ids of the clips that must not be hits: the query's own, unless `include_self`."""
+        return frozenset({self._itself.id} if self._itself and not include_self else ())
+
+    @property
+    def _itself(self) -> ClipRecord | None:
+        """The clip in the library that has the query's motion."""
+        return self.clip or self.stored_as
 
 
 def describe(lib: Library, source: QuerySource, names: tuple[str, ...]) -> QueryDescriptors:
@@ -69,7 +82,9 @@ def describe(lib: Library, source: QuerySource, names: tuple[str, ...]) -> Query
     _check_part(source)
     if source.clip_id is not None:
         return _describe_clip(lib, source, source.clip_id, names)
-    return QueryDescriptors(source, _describe_upload(lib, source, names), None)
+    request = analysis_request(source, lib.settings.max_upload_bytes)
+    arrays = _describe_upload(lib, source, request, names)
+    return QueryDescriptors(source, arrays, None, _stored_as(lib, request))
 
 
 def analysis_request(source: QuerySource, max_bytes: int) -> AnalysisRequest:
@@ -121,11 +136,25 @@ def _describe_clip(
     return QueryDescriptors(source, _described(part, names), clip)
 
 
-def _describe_upload(lib: Library, source: QuerySource, names: tuple[str, ...]) -> Arrays:
-    analysis = lib.pool.analyze(analysis_request(source, lib.settings.max_upload_bytes))
+def _describe_upload(
+    lib: Library, source: QuerySource, request: AnalysisRequest, names: tuple[str, ...]
+) -> Arrays:
+    analysis = lib.pool.analyze(request)
     if source.is_whole:
         return analysis.arrays
     return _described(cut(analysis.motion, source.start, source.end), names)
+
+
+def _stored_as(lib: Library, request: AnalysisRequest) -> ClipRecord | None:
+    """The clip of the uploaded file and of the same animation stack; None if it is not stored."""
+    skeleton = request.skeleton
+    key = content_key(
+        hashlib.sha256(request.content or b"").hexdigest(),
+        None if skeleton is None else hashlib.sha256(skeleton).hexdigest(),
+    )
+    with lib.store.read() as tx:
+        clip = find_by_content(tx, key)
+    return clip if clip is not None and clip.hints.stack == request.stack else None
 
 
 def _described(motion: Motion, names: tuple[str, ...]) -> Arrays:

@@ -38,7 +38,3 @@ class QuerySource:
     def is_whole(self) -> bool:
         """Whether the whole motion is selected."""
         return self.start is None and self.end is None
-
-    def excluded_clips(self, *, include_self: bool) -> frozenset[str]:
-        """Ids of the clips that must not be hits: the queried clip, unless `include_self`."""
-        return frozenset({self.clip_id} if self.clip_id and not include_self else ())

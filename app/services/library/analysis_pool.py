@@ -187,24 +187,33 @@ def analyze_file(request: AnalysisRequest, limits: Limits) -> Analysis:
     from app.analysis import analyze
     from app.analysis.keyposes.keyposes import T1, T2
     from app.analysis.rhythm.rhythm import RhythmInput
+    from app.analysis.stage_times import StageTimes
     from app.motion.canonical.canonical import canonicalize
     from app.motion.roles.joint_roles import JointRole
 
-    recording = read_file(request, limits)
+    times = StageTimes()
+    with times.stage("read"):
+        recording = read_file(request, limits)
     roles = {JointRole(role): joint for role, joint in (request.roles or {}).items()}
-    motion = canonicalize(
-        recording,
-        frame_rate=request.frame_rate,
-        metres_per_unit=request.metres_per_unit,
-        roles=roles or None,
-    )
+    with times.stage("canonicalize"):
+        motion = canonicalize(
+            recording,
+            frame_rate=request.frame_rate,
+            metres_per_unit=request.metres_per_unit,
+            roles=roles or None,
+        )
     if request.for_search:
         return analyze.describe_for_search(motion)
     t1, t2 = request.thresholds or (T1, T2)
     given = RhythmInput(request.beats, request.tempo, request.audio_offset)
-    onsets, doubts = (None, ()) if request.audio_path is None else _listen(Path(request.audio_path))
-    found = analyze.analyze(motion, t1=t1, t2=t2, rhythm_input=given, onsets=onsets)
+    with times.stage("listen"):
+        onsets, doubts = _onsets(request.audio_path)
+    found = analyze.analyze(motion, t1=t1, t2=t2, rhythm_input=given, onsets=onsets, times=times)
     return replace(found, cautions=(*doubts, *found.cautions))
+
+
+def _onsets(audio_path: str | None) -> tuple[Onsets | None, tuple[Caution, ...]]:
+    return (None, ()) if audio_path is None else _listen(Path(audio_path))
 
 
 def _listen(path: Path) -> tuple[Onsets | None, tuple[Caution, ...]]:

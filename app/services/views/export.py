@@ -93,8 +93,8 @@ def export(
     )
     clip = ready_clip(lib, clip_id)
     if options.content is not ExportContent.POSITIONS:
-        source, joints = clip.frame_rate or 1.0, clip.joints or 0
-        rate = requested_rate(lib, clip, fps, source=source, joints=joints)
+        own_rate, joint_count = clip.frame_rate or 1.0, clip.joints or 0
+        rate = requested_rate(lib, clip, fps, source=own_rate, joints=joint_count)
         table = table_of(lib, clip, options.content, rate)
         return Export(f"{_safe_stem(clip)}-{options.content}.csv", table)
     motion, rate, ending = _motion(lib, clip, options)

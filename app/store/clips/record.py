@@ -194,9 +194,14 @@ class NewClip:
     @property
     def content_key(self) -> str:
         """Hex SHA-256 that is equal for two clips only if both of their files are the same."""
-        if self.skeleton_sha256 is None:
-            return self.sha256
-        return hashlib.sha256(f"{self.sha256}+{self.skeleton_sha256}".encode()).hexdigest()
+        return content_key(self.sha256, self.skeleton_sha256)
+
+
+def content_key(sha256: str, skeleton_sha256: str | None) -> str:
+    """The `NewClip.content_key` of a motion file, and of the skeleton file that comes with it."""
+    if skeleton_sha256 is None:
+        return sha256
+    return hashlib.sha256(f"{sha256}+{skeleton_sha256}".encode()).hexdigest()
 
 
 @dataclass(frozen=True, slots=True)

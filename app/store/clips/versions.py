@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from sqlalchemy import insert, select, update
 
 from app.store.clips.record import ClipState
+from app.store.database import schema
 from app.store.database.engine import Tx
 from app.store.database.tables import clips, library, tombstones
 
@@ -50,6 +51,11 @@ def version(tx: Tx) -> int:
 def library_id(tx: Tx) -> str:
     """The id of the library, made when the library was created."""
     return str(tx.execute(_LIBRARY_ID).scalar_one())
+
+
+def library_id_if_any(tx: Tx) -> str | None:
+    """As `library_id`; None if the database has an older schema, which has no id."""
+    return library_id(tx) if schema.has_column(tx, library.c.library_id) else None
 
 
 def lock(tx: Tx) -> None:

@@ -10,9 +10,9 @@ from __future__ import annotations
 import sysconfig
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from sqlalchemy import inspect, text
+from sqlalchemy import Column, inspect, text
 
 from app.errors import DatabaseOutOfDate, StorageError
 from app.store.database.engine import Database, Tx
@@ -100,7 +100,7 @@ def check(database_url: str) -> None:
     _refuse_newer(status)
     raise DatabaseOutOfDate(
         f"The database has schema {status.current or 'none'}, this Kinedex needs {status.needed}: "
-        "stop all its processes, make a copy, and run `kinedex db upgrade`"
+        "stop all its processes, make a copy (`kinedex backup`), and run `kinedex db upgrade`"
     )
 
 
@@ -110,6 +110,20 @@ def _refuse_newer(status: SchemaState) -> None:
             f"The database is from a newer Kinedex (its schema is {status.current}, this Kinedex "
             f"needs {status.needed}): install the newer version"
         )
+
+
+def check_known(database_url: str) -> None:
+    """As `check`, but the schema may also be an older one of Kinedex, as before an upgrade."""
+    status = state(database_url)
+    _refuse_newer(status)
+    if status.current is None:
+        raise DatabaseOutOfDate("The database has no schema version: it is no library of Kinedex")
+
+
+def has_column(tx: Tx, column: Column[Any]) -> bool:
+    """Whether the database has the column. A database with an older schema may not have it."""
+    found, table = inspect(tx), column.table.name
+    return found.has_table(table) and column.name in {c["name"] for c in found.get_columns(table)}
 
 
 def prepare(database_url: str) -> None:

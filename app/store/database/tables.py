@@ -191,6 +191,8 @@ jobs = Table(
     Column("started_at", UtcDateTime),
     Column("finished_at", UtcDateTime, index=True),
     Index(None, "state", "priority", "created_at"),
+    # The metrics count the jobs of each kind and state, and read nothing but this index.
+    Index(None, "state", "kind", "created_at"),
 )
 
 import_entries = Table(
@@ -266,4 +268,13 @@ study_votes = Table(
     Column("voter_sha256", String),
     Column("created_at", UtcDateTime, nullable=False),
     UniqueConstraint("sequence", "voter_sha256"),
+)
+
+# How long the stages of analyses took since the library was made. The sums never fall.
+stage_times = Table(
+    "stage_times",
+    metadata,
+    Column("stage", String, primary_key=True),
+    Column("seconds", Float, nullable=False),
+    Column("count", BigInteger, nullable=False),
 )

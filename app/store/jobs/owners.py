@@ -38,6 +38,24 @@ def is_gone(owner: str) -> bool:
     return _started(name.pid) != name.started
 
 
+def is_here(owner: str) -> bool:
+    """Whether the process with this name belongs to this machine and to this container."""
+    name = _Name.parse(owner)
+    return name is not None and name.process_table == _process_table()
+
+
+@cache
+def machine() -> str:
+    """The boot id of this machine's kernel; a random text if the system has none.
+
+    Processes with the same text have the same monotonic clock, also in different containers.
+    """
+    try:
+        return (_PROC / "sys/kernel/random/boot_id").read_text().strip()
+    except OSError:
+        return new_id("machine")
+
+
 @dataclass(frozen=True, slots=True)
 class _Name:
     process_table: str

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from typing import Any
 
-from sqlalchemy import ColumnElement, select, union
+from sqlalchemy import Column, ColumnElement, select, union
 
 from app.store.clips import versions as library
 from app.store.clips.repository import in_batches
+from app.store.database import schema
 from app.store.database.engine import Tx
 from app.store.database.tables import clips, jobs
 from app.store.jobs.record import OPEN_STATES
 
 _OF_OPEN_JOBS = jobs.c.state.in_([state.value for state in OPEN_STATES])
-_REFERENCES: tuple[tuple[ColumnElement[Any], tuple[ColumnElement[bool], ...]], ...] = (
+_Reference = tuple[Column[Any], tuple[ColumnElement[bool], ...]]
+_REFERENCES: tuple[_Reference, ...] = (
     (clips.c.sha256, ()),
     (clips.c.skeleton_sha256, ()),
     (clips.c.audio_sha256, ()),
@@ -34,7 +36,16 @@ def unreferenced(tx: Tx, sha256s: Collection[str]) -> tuple[str, ...]:
 
 def referenced(tx: Tx) -> frozenset[str]:
     """All files that a clip or an open job refers to."""
-    every = union(*(select(c).where(c.is_not(None), *when) for c, when in _REFERENCES))
+    return _all_of(tx, _REFERENCES)
+
+
+def referenced_in_any_schema(tx: Tx) -> frozenset[str]:
+    """As `referenced`, in a database that may have an older schema with fewer columns."""
+    return _all_of(tx, [(c, when) for c, when in _REFERENCES if schema.has_column(tx, c)])
+
+
+def _all_of(tx: Tx, references: Sequence[_Reference]) -> frozenset[str]:
+    every = union(*(select(c).where(c.is_not(None), *when) for c, when in references))
     return frozenset(tx.execute(every).scalars())
 
 

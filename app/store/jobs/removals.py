@@ -13,6 +13,7 @@ from collections.abc import Collection
 from sqlalchemy import and_, delete, exists, insert, or_, select, update
 
 from app.errors import StorageError
+from app.store.database import schema
 from app.store.database.engine import Tx
 from app.store.database.tables import file_removals, jobs
 from app.store.files.files import FileStore
@@ -62,8 +63,12 @@ def settle(tx: Tx) -> bool:
 
 
 def forget_all(tx: Tx) -> None:
-    """Deletes all records, in a copy of the database: their files are not in the copy."""
-    tx.execute(delete(file_removals))
+    """Deletes all records, in a copy of the database: their files are not in the copy.
+
+    The copy may have an older schema, without records.
+    """
+    if schema.has_column(tx, file_removals.c.sha256):
+        tx.execute(delete(file_removals))
 
 
 def finish(tx: Tx, files: FileStore) -> int:

@@ -5,6 +5,9 @@ Files never change, because their names are the hashes of their content, so they
 and after the snapshot. A file that was deleted meanwhile is missing in the copy. Then the database
 is copied again, until no file is missing.
 
+The database may have the schema of an earlier version: a copy is made before each upgrade. Then the
+copy has this schema too, and is upgraded as the library is.
+
 A damaged copy is worse than none. So all pages of the copied database are checked, and the bytes
 of each file are compared with its name.
 """
@@ -35,7 +38,7 @@ from app.store.files.files import NO_SPACE, FileStore
 from app.store.files.hash_check import refuse_damage
 from app.store.files.id_file import write_id
 from app.store.files.locked_file import locked_folder, remove_if_abandoned
-from app.store.folders import sync_folder
+from app.store.folders import make_private_synced, sync_folder
 from app.store.jobs import references, removals
 from app.store.store import Store
 
@@ -132,8 +135,11 @@ def _copy_and_rename(store: Store, part: Path, path: Path, progress: Progress | 
 def _copy(store: Store, part: Path, progress: Progress | None) -> frozenset[str]:
     """Copies files and database into the folder `part`; returns the names of the files."""
     with store.read() as tx:
-        needed, library_id = references.referenced(tx), library.library_id(tx)
-    write_id(part / FILES, library_id)
+        needed = references.referenced_in_any_schema(tx)
+        library_id = library.library_id_if_any(tx)
+    make_private_synced(part / FILES)
+    if library_id is not None:
+        write_id(part / FILES, library_id)
     files = _Files(store.files, FileStore(part / FILES))
     _add(files, needed, progress)
     lost: set[str] = set()
@@ -178,7 +184,7 @@ def _copy_database(database: Database, path: Path) -> frozenset[str]:
         with copy.write() as tx:
             # The copy has no files to remove, and a file that is stored there later must stay.
             removals.forget_all(tx)
-            return references.referenced(tx)
+            return references.referenced_in_any_schema(tx)
     finally:
         copy.close()
 

@@ -128,7 +128,8 @@ def test_a_query_by_a_file_does_not_store_it(
     ready_library: Library, some_demo_clips: list[DemoClip], clip_of: FindClip
 ) -> None:
     kick = next(c for c in some_demo_clips if (c.person, c.task) == ("ada", "kick"))
-    query = PoseQuery(QuerySource(content=io.BytesIO(kick.content)), time=TIME)
+    source = QuerySource(content=io.BytesIO(kick.content))
+    query = PoseQuery(source, time=TIME, include_self=True)
     (first, *_) = find_pose(ready_library, query).items
     assert first.clip.id == clip_of("ada", "kick").id
     assert (first.distance, first.time) == (pytest.approx(0.0, abs=1e-6), pytest.approx(TIME))
@@ -214,3 +215,18 @@ def test_a_missing_clip_and_a_clip_that_is_not_ready_are_refused(
     with pytest.raises(ClipNotReady):
         find_pose(lib, PoseQuery(QuerySource(made.clip.id), time=0.0))
     assert find_pose(lib, PoseQuery(positions=GOOD)).items == ()
+
+
+def test_a_stored_file_does_not_find_itself_unless_it_may(
+    ready_library: Library, clip_of: FindClip
+) -> None:
+    clip = clip_of("ada", "kick")
+    content = ready_library.store.files.path(clip.sha256).read_bytes()
+
+    def found(**more: Any) -> list[str]:
+        source = QuerySource(content=io.BytesIO(content))
+        query = PoseQuery(source, time=TIME, limit=1000, **more)
+        return [hit.clip.id for hit in find_pose(ready_library, query).items]
+
+    assert clip.id not in found()
+    assert found(include_self=True)[0] == clip.id

@@ -100,7 +100,8 @@ def test_an_upload_finds_the_same_stored_clip_and_is_not_stored(
 ) -> None:
     demo = next(c for c in some_demo_clips if (c.person, c.task) == ("ada", "kick"))
     files = set(ready_library.store.files)
-    asked = MotionQuery(QuerySource(content=io.BytesIO(demo.content)), method=method, limit=1)
+    source = QuerySource(content=io.BytesIO(demo.content))
+    asked = MotionQuery(source, method=method, limit=1, include_self=True)
     best = find.find_motion(ready_library, asked).items[0]
     assert best.clip.id == clip_of("ada", "kick").id
     assert best.distance == pytest.approx(0, abs=1e-4)
@@ -118,7 +119,9 @@ def test_a_part_of_a_clip_is_described_by_itself(
     assert next(h for h in found if h.clip.id == clip.id).distance > 0.01
     demo = next(c for c in some_demo_clips if (c.person, c.task) == ("ada", "walk"))
     uploaded = MotionQuery(
-        QuerySource(content=io.BytesIO(demo.content), start=0.5, end=1.5), limit=100
+        QuerySource(content=io.BytesIO(demo.content), start=0.5, end=1.5),
+        limit=100,
+        include_self=True,
     )
     theirs = find.find_motion(ready_library, uploaded).items
     assert [h.distance for h in theirs] == pytest.approx([h.distance for h in found], abs=1e-4)
@@ -215,3 +218,34 @@ def test_a_wrong_field_of_a_word_search_is_named(
     with pytest.raises(BadField) as refused:
         find.find_words(ready_library, query)
     assert [place.location for place in refused.value.places] == [location]
+
+
+SCOPES = [
+    {"method": "vector"},
+    {"method": "dtw"},
+    {"method": "metric-task"},
+    {"scope": "windows", "start": 0.5, "end": 1.5},
+    {"scope": "segments", "method": "vector"},
+]
+
+
+@pytest.mark.parametrize("asked", SCOPES, ids=str)
+def test_a_search_by_a_stored_file_finds_what_a_search_by_its_clip_finds(
+    ready_library: Library, clip_of: FindClip, asked: dict[str, Any]
+) -> None:
+    clip = clip_of("ada", "kick")
+    content = ready_library.store.files.path(clip.sha256).read_bytes()
+    part = {name: asked[name] for name in ("start", "end") if name in asked}
+    options = {name: value for name, value in asked.items() if name not in part}
+
+    def found(source: QuerySource, **more: Any) -> list[str]:
+        query = MotionQuery(source, limit=1000, **options, **more)
+        return [hit.clip.id for hit in find.find_motion(ready_library, query).items]
+
+    by_clip = found(QuerySource(clip.id, **part))
+    assert by_clip == found(QuerySource(content=io.BytesIO(content), **part))
+    if asked.get("scope") is None:
+        assert clip.id not in by_clip
+    itself = found(QuerySource(content=io.BytesIO(content), **part), include_self=True)
+    assert itself[0] == clip.id
+    assert len(itself) > len(by_clip)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from typing import Any
 
 import numpy as np
 import pytest
@@ -71,8 +72,31 @@ def test_an_upload_has_the_duration_of_its_positions_and_no_interval() -> None:
     assert (query.seconds, query.interval) == (2.0, None)
 
 
-def test_the_queried_clip_is_excluded_unless_it_may_be_a_hit() -> None:
-    source = QuerySource("clip")
-    assert source.excluded_clips(include_self=False) == {"clip"}
-    assert source.excluded_clips(include_self=True) == frozenset()
-    assert QuerySource(content=io.BytesIO(b"x")).excluded_clips(include_self=False) == frozenset()
+def test_the_queried_clip_is_excluded_unless_it_may_be_a_hit(
+    ready_clips: list[ClipRecord],
+) -> None:
+    clip = ready_clips[0]
+    upload = QuerySource(content=io.BytesIO(b"x"))
+    for query in (
+        QueryDescriptors(QuerySource(clip.id), {}, clip),
+        QueryDescriptors(upload, {}, None, stored_as=clip),
+    ):
+        assert query.excluded_clips(include_self=False) == {clip.id}
+        assert query.excluded_clips(include_self=True) == frozenset()
+    new = QueryDescriptors(upload, {}, None)
+    assert new.excluded_clips(include_self=False) == frozenset()
+
+
+def test_a_file_that_is_stored_already_is_recognized(
+    ready_library: Library, ready_clips: list[ClipRecord]
+) -> None:
+    clip = ready_clips[0]
+    content = ready_library.store.files.path(clip.sha256).read_bytes()
+
+    def stored_as(content: bytes, **hints: Any) -> ClipRecord | None:
+        source = QuerySource(content=io.BytesIO(content), **hints)
+        return describe(ready_library, source, ("features_10hz",)).stored_as
+
+    assert stored_as(content) == clip
+    assert stored_as(content, start=0.5, end=1.0) == clip
+    assert stored_as(content + b"\n") is None
