@@ -14,11 +14,13 @@ from app.motion.canonical.frame_rate import judge_frame_rate
 from app.motion.canonical.units import SCALES, Unit, confirm_unit, judge_unit
 from app.motion.canonical.up_axis import judge_up_axis, to_y_up
 from app.motion.motion import Motion
+from app.motion.plausibility.animals import refuse_animals
 from app.motion.roles.bodies import roles_of_one_body
 from app.motion.roles.joint_roles import ESSENTIAL_ROLES, SUN_ROLES, JointRole
 from app.motion.roles.roles import given_roles
 from app.motion.skeleton.kinematics import rest_positions
 from app.motion.skeleton.recording import FRAME_RATES, Caution, Recording
+from app.numerics.arrays import FloatArray
 
 
 def canonicalize(
@@ -57,6 +59,8 @@ def canonicalize(
         metres_per_unit=unit.metres_per_unit,
         cautions=recording.cautions + others + _axis_caution(recording, up_axis) + unit.cautions,
     )
+    if not given:
+        refuse_animals(motion, _rest(recording))
     doubts = (
         check_extent(motion)
         + _roles_caution(missing)
@@ -64,6 +68,11 @@ def canonicalize(
         + _rate_cautions(motion)
     )
     return _with_cautions(motion, doubts)
+
+
+def _rest(recording: Recording) -> FloatArray | None:
+    """(joints, 3) the rest pose in the axes of the file; None for markers, which have none."""
+    return None if recording.rotations is None else rest_positions(recording.skeleton)
 
 
 def _active_rate(recording: Recording, hint: float | None) -> float:

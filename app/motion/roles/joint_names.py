@@ -100,7 +100,7 @@ def _first_by_key(names: Sequence[str]) -> dict[tuple[Side | None, str], int]:
 
 def side_and_word(name: str) -> tuple[Side | None, str]:
     """The side of a joint and the rest of its name: ("left", "upperarm") for `UpperArm_L`."""
-    words = _words(name)
+    words = words_of_name(name)
     sides = [_SIDES[word] for word in words if word in _SIDES]
     rest = "".join(word for word in words if word not in _SIDES)
     if len(sides) == 1 and rest:
@@ -108,7 +108,8 @@ def side_and_word(name: str) -> tuple[Side | None, str]:
     return _side_without_separator("".join(words))
 
 
-def _words(name: str) -> list[str]:
+def words_of_name(name: str) -> list[str]:
+    """The words of a joint's name in lower case, without prefixes: ["upper", "arm", "l"]."""
     name_part = re.split(r"[:|]", name)[-1].strip()
     while prefix := _PREFIX.match(name_part):
         name_part = name_part[prefix.end() :]
