@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,6 +17,7 @@ from app.motion.motion import Motion
 from app.motion.plausibility.animals import refuse_animals
 from app.motion.roles.bodies import roles_of_one_body
 from app.motion.roles.joint_roles import ESSENTIAL_ROLES, SUN_ROLES, JointRole
+from app.motion.roles.middles import with_given_middles, with_missing_middles
 from app.motion.roles.roles import given_roles
 from app.motion.skeleton.kinematics import rest_positions
 from app.motion.skeleton.recording import FRAME_RATES, Caution, Recording
@@ -28,19 +29,24 @@ def canonicalize(
     *,
     frame_rate: float | None = None,
     metres_per_unit: float | None = None,
-    roles: Mapping[JointRole, str] | Mapping[str, str] | None = None,
+    roles: Mapping[JointRole, str | Sequence[str]]
+    | Mapping[str, str | Sequence[str]]
+    | None = None,
 ) -> Motion:
     """The motion of a recording in meters, Y up, right-handed, with roles, rate and unit.
 
-    frame_rate (Hz), metres_per_unit and roles (the joint name of each role) are hints of a client.
-    They have priority over the file. Raises BadField if a hint is impossible, NotHuman if essential
+    frame_rate (Hz), metres_per_unit and roles (the joint name of each role, or two for their
+    middle) are hints of a client. They have priority over the file. Raises BadField if a hint is impossible, NotHuman if essential
     roles are missing, Unreadable if there is no usable frame rate, and BadContent if the body is
     larger or faster than any human.
     """
-    names, parents = recording.skeleton.names, recording.skeleton.parents
     rate = _active_rate(recording, frame_rate)
-    given = given_roles(names, {str(role): name for role, name in (roles or {}).items()})
-    found, others = roles_of_one_body(names, parents, recording.positions, given)
+    said = {str(role): joints for role, joints in (roles or {}).items()}
+    recording, given = with_given_middles(recording, given_roles(recording.skeleton.names, said))
+    found, others = roles_of_one_body(
+        recording.skeleton.names, recording.skeleton.parents, recording.positions, given
+    )
+    recording, found, made = with_missing_middles(recording, found)
     missing = _missing_roles(found)
     up_axis = judge_up_axis(
         recording.positions, rest_positions(recording.skeleton), found, recording.up_axis
@@ -49,15 +55,19 @@ def canonicalize(
     positions = to_y_up(recording.positions, up_axis) * np.float32(unit.metres_per_unit)
     motion = Motion(
         format=recording.format,
-        names=names,
-        parents=parents,
+        names=recording.skeleton.names,
+        parents=recording.skeleton.parents,
         positions=np.ascontiguousarray(positions, dtype=np.float32),
         roles=found,
         missing_roles=missing,
         frame_rate=rate,
         declared_frame_rate=recording.frame_rate,
         metres_per_unit=unit.metres_per_unit,
-        cautions=recording.cautions + others + _axis_caution(recording, up_axis) + unit.cautions,
+        cautions=recording.cautions
+        + others
+        + made
+        + _axis_caution(recording, up_axis)
+        + unit.cautions,
     )
     if not given:
         refuse_animals(motion, _rest(recording))

@@ -47,7 +47,7 @@ class Names:
         """
         above = {int(parent) for parent in self.parents}
         return [
-            tuple(words_of_name(name)) if self.parents[joint] >= 0 or joint in above else ()
+            words_of_name(name) if self.parents[joint] >= 0 or joint in above else ()
             for joint, name in enumerate(self.names)
         ]
 
