@@ -12,7 +12,7 @@ from app.errors import BadField, NotHuman, Place, Unreadable
 from app.motion.canonical.extent import check_extent
 from app.motion.canonical.frame_rate import judge_frame_rate
 from app.motion.canonical.units import SCALES, Unit, confirm_unit, judge_unit
-from app.motion.canonical.up_axis import judge_up_axis, to_y_up
+from app.motion.canonical.up_axis import UP_AXES, judge_up_axis, to_y_up
 from app.motion.motion import Motion
 from app.motion.plausibility.animals import refuse_animals
 from app.motion.roles.bodies import roles_of_one_body
@@ -29,16 +29,17 @@ def canonicalize(
     *,
     frame_rate: float | None = None,
     metres_per_unit: float | None = None,
+    up_axis: str | None = None,
     roles: Mapping[JointRole, str | Sequence[str]]
     | Mapping[str, str | Sequence[str]]
     | None = None,
 ) -> Motion:
     """The motion of a recording in meters, Y up, right-handed, with roles, rate and unit.
 
-    frame_rate (Hz), metres_per_unit and roles (the joint name of each role, or two for their
-    middle) are hints of a client. They have priority over the file. Raises BadField if a hint is impossible, NotHuman if essential
-    roles are missing, Unreadable if there is no usable frame rate, and BadContent if the body is
-    larger or faster than any human.
+    frame_rate (Hz), metres_per_unit, up_axis and roles (the joint name of each role, or two for
+    their middle) are hints of a client. They have priority over the file. Raises BadField if a hint
+    is impossible, NotHuman if essential roles are missing or the body is an animal's, Unreadable if
+    there is no usable frame rate, and BadContent if the body is larger or faster than any human.
     """
     rate = _active_rate(recording, frame_rate)
     said = {str(role): joints for role, joints in (roles or {}).items()}
@@ -48,11 +49,9 @@ def canonicalize(
     )
     recording, found, made = with_missing_middles(recording, found)
     missing = _missing_roles(found)
-    up_axis = judge_up_axis(
-        recording.positions, rest_positions(recording.skeleton), found, recording.up_axis
-    )
+    axis, axis_cautions = _active_up_axis(recording, found, up_axis)
     unit = _active_unit(recording, found, metres_per_unit)
-    positions = to_y_up(recording.positions, up_axis) * np.float32(unit.metres_per_unit)
+    positions = to_y_up(recording.positions, axis) * np.float32(unit.metres_per_unit)
     motion = Motion(
         format=recording.format,
         names=recording.skeleton.names,
@@ -63,11 +62,7 @@ def canonicalize(
         frame_rate=rate,
         declared_frame_rate=recording.frame_rate,
         metres_per_unit=unit.metres_per_unit,
-        cautions=recording.cautions
-        + others
-        + made
-        + _axis_caution(recording, up_axis)
-        + unit.cautions,
+        cautions=recording.cautions + others + made + axis_cautions + unit.cautions,
     )
     if not given:
         refuse_animals(motion, _rest(recording))
@@ -126,6 +121,20 @@ def _missing_roles(found: Mapping[JointRole, int]) -> tuple[JointRole, ...]:
     return tuple(role for role in SUN_ROLES if role not in found)
 
 
+def _active_up_axis(
+    recording: Recording, roles: Mapping[JointRole, int], hint: str | None
+) -> tuple[str, tuple[Caution, ...]]:
+    """The axis that points up: from the client, else as the file says outright, else judged."""
+    if hint is not None:
+        if hint not in UP_AXES:
+            message = f"expected one of {', '.join(UP_AXES)}, found {hint!r}"
+            raise BadField(f"up_axis: {message}", places=[Place("up_axis", message)])
+        return hint, ()
+    if recording.is_up_axis_said:
+        return recording.up_axis, ()
+    return judge_up_axis(recording.positions, _rest(recording), roles, recording.up_axis)
+
+
 def _active_unit(recording: Recording, roles: Mapping[JointRole, int], hint: float | None) -> Unit:
     """The unit from the client, else from the file if it is plausible, else from the stature."""
     if hint is not None:
@@ -133,13 +142,6 @@ def _active_unit(recording: Recording, roles: Mapping[JointRole, int], hint: flo
     if recording.metres_per_unit is not None:
         return confirm_unit(recording.metres_per_unit, recording.positions, roles)
     return judge_unit(recording.positions, roles)
-
-
-def _axis_caution(recording: Recording, up_axis: str) -> tuple[Caution, ...]:
-    if up_axis == recording.up_axis:
-        return ()
-    detail = f"the body stands along {up_axis}, not {recording.up_axis}; turned to Y up"
-    return (Caution("up_axis_guessed", detail),)
 
 
 def _roles_caution(missing: tuple[JointRole, ...]) -> tuple[Caution, ...]:

@@ -9,7 +9,7 @@ the one with the most roles is chosen, then the one with the better aliases.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import combinations, product
+from itertools import combinations, pairwise, product
 
 import numpy as np
 
@@ -51,7 +51,7 @@ def limbs_by_name(named: Named, tree: Tree, positions: FloatArray) -> dict[Joint
 def _best_limb(
     limb: Sequence[JointRole], named: Named, tree: Tree, positions: FloatArray
 ) -> dict[JointRole, int]:
-    """The joints of one limb: the choice with the most roles, then the one with the best aliases."""
+    """The joints of one limb: the choice with the most roles, then that with the best aliases."""
     roles = [role for role in limb if role in named]
     choices = [_tried(named[role]) for role in roles]
     for left_out in range(len(roles)):
@@ -105,10 +105,7 @@ def _tried(joints: Sequence[NamedJoint]) -> list[NamedJoint]:
 def _is_limb(choice: Sequence[NamedJoint], tree: Tree) -> bool:
     """Whether each joint is below the one before it."""
     joints = [named.joint for named in choice]
-    return all(
-        upper != lower and upper in tree.above(lower)
-        for upper, lower in zip(joints, joints[1:], strict=False)
-    )
+    return all(upper != lower and upper in tree.above(lower) for upper, lower in pairwise(joints))
 
 
 def _start_of_limb(

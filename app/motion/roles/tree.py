@@ -27,7 +27,7 @@ class Tree:
         return found
 
     def between(self, upper: int, lower: int) -> list[int]:
-        """The joints from `upper` to `lower`, both included; empty if one is not below the other."""
+        """The joints from `upper` to `lower`, both included; empty if that is not below."""
         way = self.above(lower)
         return way[way.index(upper) :: -1] if upper in way else []
 

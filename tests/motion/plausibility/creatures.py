@@ -190,7 +190,7 @@ ANIMALS: dict[str, Recording] = {
 def _crawling(leg: float, pitch: float = 80.0) -> Recording:
     """A person on hands and knees: the rest pose is upright and the root leans forward."""
     bones = biped(leg=leg)
-    recording = moving(bones, pitch=pitch, height=-leg / 2)
+    recording = moving(bones, pitch=pitch, height=0.1 - leg / 2)
     names = recording.skeleton.names
     rotations = recording.rotations
     assert rotations is not None
@@ -226,7 +226,7 @@ PEOPLE: dict[str, Recording] = {
     "crawling in a file of positions": without_rest(_crawling(0.84)),
     "crawling child": _crawling(0.6),
     "on hands and feet": moving(biped(), pitch=100),
-    "standing on the hands": moving(biped(), pitch=180, height=0.2),
+    "standing on the hands": moving(biped(), pitch=180, speed=0),
     "lying": moving(biped(), pitch=90, height=-0.85, speed=0),
     "cartoon with short legs": moving(biped(leg=0.44)),
     "cartoon with short legs and a tail": moving(biped(leg=0.44, extra=TAIL)),
