@@ -1,10 +1,10 @@
 """manifest.csv: what a library's owner says about the files beside it.
 
-Columns: `path` (relative to the manifest), and any of `name person task words license source
-fps unit keyposes audio audio_offset tempo beats`; `frame_rate` is another name of `fps`. Words are
-separated by spaces, a phrase has underscores; keyposes and beats are seconds, separated by spaces;
-audio is a path like `path`. Other columns are ignored. A row that cannot be used is kept with its
-problem, which is reported with its file.
+Columns: `path` (relative to the manifest), and any of `name person task words license source fps
+unit up_axis keyposes audio audio_offset tempo beats`; `frame_rate` is another name of `fps`. Words
+are separated by spaces, a phrase has underscores; keyposes and beats are seconds, separated by
+spaces; audio is a path like `path`. Other columns are ignored. A row that cannot be used is kept
+with its problem, which is reported with its file.
 
 A manifest is read as a stream, by `manifest_table`; what is kept of a row is its text, and that
 is understood when its file's turn comes.

@@ -66,15 +66,16 @@ class ClipLabels:
 class AnalysisHints:
     """What a client says about a motion file: it goes before what the file says.
 
-    frame_rate: Hz; metres_per_unit: of the file's coordinates; roles: joint name by role; stack:
-    name of an FBX file's animation stack; audio_offset: seconds of the motion at which the
-    recording begins; tempo: beats a minute; beats: seconds. The column of a hint in the table
-    `clips` has its name and `_override`.
+    frame_rate: Hz; metres_per_unit: of the file's coordinates; up_axis: "y", "-z", ...; roles:
+    joint name by role, or two names for the middle of both; stack: name of an FBX file's animation
+    stack; audio_offset: seconds of the motion at which the recording begins; tempo: beats a minute;
+    beats: seconds. The column of a hint in the table `clips` has its name and `_override`.
     """
 
     frame_rate: float | None = None
     metres_per_unit: float | None = None
-    roles: dict[str, str] | None = None
+    up_axis: str | None = None
+    roles: dict[str, str | list[str]] | None = None
     stack: str | None = None
     audio_offset: float | None = None
     tempo: float | None = None
