@@ -15,6 +15,7 @@ from app.motion.canonical.units import SCALES, Unit, confirm_unit, judge_unit
 from app.motion.canonical.up_axis import UP_AXES, judge_up_axis, to_y_up
 from app.motion.motion import Motion
 from app.motion.plausibility.animals import refuse_animals
+from app.motion.plausibility.doubts import doubts_about
 from app.motion.roles.bodies import roles_of_one_body
 from app.motion.roles.joint_roles import ESSENTIAL_ROLES, SUN_ROLES, JointRole
 from app.motion.roles.middles import with_given_middles, with_missing_middles
@@ -68,6 +69,7 @@ def canonicalize(
         refuse_animals(motion, _rest(recording))
     doubts = (
         check_extent(motion)
+        + doubts_about(motion, is_rigid=_is_rigid(recording))
         + _roles_caution(missing)
         + _assumption(recording, frame_rate)
         + _rate_cautions(motion)
@@ -78,6 +80,11 @@ def canonicalize(
 def _rest(recording: Recording) -> FloatArray | None:
     """(joints, 3) the rest pose in the axes of the file; None for markers, which have none."""
     return None if recording.rotations is None else rest_positions(recording.skeleton)
+
+
+def _is_rigid(recording: Recording) -> bool:
+    """Whether the bones have fixed lengths, because only the root moves."""
+    return recording.rotations is not None and recording.translations is None
 
 
 def _active_rate(recording: Recording, hint: float | None) -> float:
