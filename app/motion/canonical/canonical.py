@@ -158,7 +158,8 @@ def _roles_caution(missing: tuple[JointRole, ...]) -> tuple[Caution, ...]:
 
 
 def _rate_cautions(motion: Motion) -> tuple[Caution, ...]:
-    return tuple(judge_frame_rate(motion.role_positions(), motion.frame_rate))
+    is_sure = all(caution.code != "unit_guessed" for caution in motion.cautions)
+    return tuple(judge_frame_rate(motion.role_positions(), motion.frame_rate, is_unit_sure=is_sure))
 
 
 def _assumption(recording: Recording, hint: float | None) -> tuple[Caution, ...]:

@@ -23,9 +23,9 @@ MAX_SAMPLED_FRAMES = 128
 """The most frames, evenly spaced, in which lengths and sides are measured."""
 MIN_MIRROR_RATIO = 0.75
 """The smallest ratio of the lengths of a left and a right bone (shorter / longer)."""
-MAX_LENGTH_CHANGE = 0.5
-"""The largest change of a bone's length, as a share of its median. Markers on skin, and joints that
-a camera sees, change by up to a fifth."""
+MAX_LENGTH_CHANGE, MIN_LENGTH_CHANGE = 0.5, 0.15
+"""The largest change of a bone's length, as a share of its median, and the smallest one in meters
+that is a doubt. Markers on skin, and joints that a camera sees, change by up to a fifth."""
 MIN_FROZEN, MIN_TRAVEL = 0.3, 0.2
 """Seconds for which a marker does not move at all, and meters that the hips travel meanwhile."""
 MAX_NAMED = 5
@@ -77,7 +77,8 @@ def _length_jumps(motion: Motion) -> Iterator[Caution]:
         ends = motion.positions[:, [motion.roles[upper], motion.roles[lower]]]
         lengths = np.linalg.norm((ends[:, 0] - ends[:, 1]).astype(np.float64), axis=1)
         usual = float(np.median(lengths))
-        wrong: BoolArray = np.abs(lengths - usual) > MAX_LENGTH_CHANGE * usual
+        allowed = max(MAX_LENGTH_CHANGE * usual, MIN_LENGTH_CHANGE)
+        wrong: BoolArray = np.abs(lengths - usual) > allowed
         if usual <= 0 or not wrong.any():
             continue
         names = [motion.names[motion.roles[role]] for role in (upper, lower)]
