@@ -11,6 +11,11 @@ import numpy as np
 from app.errors import BadField, NotHuman, Place, Unreadable
 from app.motion.canonical.extent import check_extent
 from app.motion.canonical.frame_rate import judge_frame_rate
+from app.motion.canonical.part_bodies import (
+    is_lower_body,
+    is_upper_body,
+    with_estimated_joints,
+)
 from app.motion.canonical.units import SCALES, Unit, confirm_unit, judge_unit
 from app.motion.canonical.up_axis import UP_AXES, judge_up_axis, to_y_up
 from app.motion.motion import Motion
@@ -65,8 +70,9 @@ def canonicalize(
         metres_per_unit=unit.metres_per_unit,
         cautions=recording.cautions + others + made + axis_cautions + unit.cautions,
     )
-    if not given:
+    if not given and all(role in found for role in ESSENTIAL_ROLES):
         refuse_animals(motion, _rest(recording))
+    motion = with_estimated_joints(motion)
     doubts = (
         check_extent(motion)
         + doubts_about(motion, is_rigid=_is_rigid(recording))
@@ -118,9 +124,12 @@ def _within(field: str, value: float, limits: tuple[float, float], unit: str) ->
 
 
 def _missing_roles(found: Mapping[JointRole, int]) -> tuple[JointRole, ...]:
-    """The roles of SUN_ROLES that were not found. Raises NotHuman if one of them is essential."""
+    """The roles of SUN_ROLES that were not found.
+
+    Raises NotHuman if one of them is essential, unless the upper or the lower body is there.
+    """
     essential = [role for role in ESSENTIAL_ROLES if role not in found]
-    if essential:
+    if essential and not (is_lower_body(found) or is_upper_body(found)):
         raise NotHuman(
             f"The skeleton has no joint for: {', '.join(essential)}",
             places=[Place(f"roles.{role}", "expected a joint, found none") for role in essential],
@@ -158,7 +167,8 @@ def _roles_caution(missing: tuple[JointRole, ...]) -> tuple[Caution, ...]:
 
 
 def _rate_cautions(motion: Motion) -> tuple[Caution, ...]:
-    is_sure = all(caution.code != "unit_guessed" for caution in motion.cautions)
+    doubted = ("unit_guessed", "lower_body_only", "upper_body_only")
+    is_sure = all(caution.code not in doubted for caution in motion.cautions)
     return tuple(judge_frame_rate(motion.role_positions(), motion.frame_rate, is_unit_sure=is_sure))
 
 
