@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
-
-import numpy as np
 
 from app.motion.roles.joint_names import side_and_word, words_of_name
 from app.motion.roles.joint_roles import JointRole
-from app.numerics.arrays import IntArray
 
 MIN_LEGS = 3
 """The fewest legs on one side of a body with more than four limbs."""
@@ -32,20 +30,26 @@ _COSTUME = frozenset(
 _NO_TAIL = frozenset(("pony", "pig", "hair", "coat", "shirt", "dress", "ribbon", "cape"))
 
 
+Sign = tuple[int, str]
+"""The weight of a sign, and the reason."""
+KEPT_SKELETONS = 64
+"""The signs of so many skeletons are kept, because many clips have the same one."""
+
+
 @dataclass(frozen=True, slots=True)
 class Names:
     """The names of joints. names, parents: (joints,). roles: the joint of each role."""
 
-    names: Sequence[str]
-    parents: IntArray
-    roles: Mapping[JointRole, int]
+    names: tuple[str, ...]
+    parents: tuple[int, ...]
+    roles: tuple[tuple[JointRole, int], ...]
 
     def in_trees(self) -> list[tuple[str, ...]]:
         """(joints,) the words of each joint of a tree. Labels of markers count as having none.
 
         People have markers at the front of the leg and three markers on one leg.
         """
-        above = {int(parent) for parent in self.parents}
+        above = set(self.parents)
         return [
             words_of_name(name) if self.parents[joint] >= 0 or joint in above else ()
             for joint, name in enumerate(self.names)
@@ -53,12 +57,17 @@ class Names:
 
     def has_grandchild(self, joint: int) -> bool:
         """Whether at least two bones hang below the joint."""
-        children = np.flatnonzero(self.parents == joint)
-        return bool(np.isin(self.parents, children).any())
+        children = {child for child, parent in enumerate(self.parents) if parent == joint}
+        return any(parent in children for parent in self.parents)
 
 
-def named_signs(body: Names) -> Iterator[tuple[int, str]]:
+@lru_cache(maxsize=KEPT_SKELETONS)
+def named_signs(body: Names) -> tuple[Sign, ...]:
     """The weight and the reason of each sign. A person has a weight of at most 2."""
+    return tuple(_signs(body))
+
+
+def _signs(body: Names) -> Iterator[Sign]:
     words = body.in_trees()
     animal = next((joint for joint, found in enumerate(words) if _is_animal(found)), None)
     if animal is not None:
@@ -90,18 +99,18 @@ def _is_wing(words: Sequence[str]) -> bool:
 
 def _arms(body: Names) -> list[int]:
     ends = ("shoulder", "elbow", "hand")
-    return [joint for role, joint in body.roles.items() if role.endswith(ends)]
+    return [joint for role, joint in body.roles if role.endswith(ends)]
 
 
 def _is_tail(joint: int, words: Sequence[str], body: Names) -> bool:
     """Whether the joint is a tail that does not hang from the head, as hair does."""
     if not any(word == "tail" for word in words) or _NO_TAIL & set(words):
         return False
-    upper = {body.roles.get(JointRole.HEAD), body.roles.get(JointRole.NECK)}
+    upper = {joint for role, joint in body.roles if role in (JointRole.HEAD, JointRole.NECK)}
     while joint >= 0:
         if joint in upper:
             return False
-        joint = int(body.parents[joint])
+        joint = body.parents[joint]
     return True
 
 
@@ -117,8 +126,8 @@ def _legs(body: Names, words: Sequence[Sequence[str]]) -> int:
     return max(counts.values())
 
 
-def _is_below_leg(joint: int, is_leg: Sequence[bool], parents: IntArray) -> bool:
-    while (joint := int(parents[joint])) >= 0:
+def _is_below_leg(joint: int, is_leg: Sequence[bool], parents: Sequence[int]) -> bool:
+    while (joint := parents[joint]) >= 0:
         if is_leg[joint]:
             return True
     return False

@@ -168,7 +168,8 @@ def _rest_pose(motion: Motion, rest: FloatArray | None) -> Iterator[_Sign]:
 
 
 def _named(motion: Motion) -> Iterator[_Sign]:
-    names = Names(motion.names, motion.parents, motion.roles)
+    parents = tuple(motion.parents.tolist())
+    names = Names(motion.names, parents, tuple(motion.roles.items()))
     yield from (_Sign(weight, reason) for weight, reason in named_signs(names))
 
 

@@ -7,7 +7,7 @@ with a mean cosine of at least .3.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 
 import numpy as np
@@ -34,6 +34,8 @@ MAX_NAMED = 5
 _R = JointRole
 _SIDED = (("upper_leg", "knee"), ("knee", "foot"), ("shoulder", "elbow"), ("elbow", "hand"))
 _MIDDLE = ((_R.HIPS, _R.NECK), (_R.NECK, _R.HEAD))
+_Bone = tuple[JointRole, JointRole]
+"""The upper and the lower end of a bone."""
 
 
 def doubts_about(motion: Motion, *, is_rigid: bool) -> tuple[Caution, ...]:
@@ -42,28 +44,43 @@ def doubts_about(motion: Motion, *, is_rigid: bool) -> tuple[Caution, ...]:
     is_rigid: whether bones cannot change their lengths, as in a file of rotations.
     """
     frames = np.unique(np.linspace(0, motion.frames - 1, MAX_SAMPLED_FRAMES).astype(int))
-    sampled = {
-        role: motion.positions[frames, joint].astype(np.float64)
-        for role, joint in motion.roles.items()
-    }
-    found = [*_unequal_limbs(motion, sampled), *side_doubts(motion, sampled)]
+    bones = _bones(motion)
+    usual = np.median(_lengths(motion.positions[frames], bones, motion), axis=0)
+    usual_lengths = dict(zip(bones, usual.tolist(), strict=True))
+    found = [*_unequal_limbs(motion, usual_lengths), *side_doubts(motion, frames)]
     if not is_rigid:
-        found += islice(_length_jumps(motion), MAX_NAMED)
+        found += islice(_length_jumps(motion, usual_lengths), MAX_NAMED)
         found += islice(_frozen_markers(motion), MAX_NAMED)
     return tuple(found)
 
 
-def _unequal_limbs(motion: Motion, sampled: dict[JointRole, FloatArray]) -> Iterator[Caution]:
-    """sampled: (frames, 3) of each role."""
-    for upper, lower in _SIDED:
-        pairs = [(_R(f"{side}_{upper}"), _R(f"{side}_{lower}")) for side in ("left", "right")]
-        if any(role not in sampled for pair in pairs for role in pair):
+def _bones(motion: Motion) -> list[_Bone]:
+    """The bones both of whose ends were found."""
+    sided = (
+        (_R(f"{side}_{upper}"), _R(f"{side}_{lower}"))
+        for side in ("left", "right")
+        for upper, lower in _SIDED
+    )
+    roles = motion.roles
+    return [bone for bone in (*_MIDDLE, *sided) if bone[0] in roles and bone[1] in roles]
+
+
+def _lengths(positions: FloatArray, bones: Sequence[_Bone], motion: Motion) -> FloatArray:
+    """(frames, bones) the lengths of bones in meters; positions: (frames, joints, 3)."""
+    upper, lower = ([motion.roles[bone[end]] for bone in bones] for end in (0, 1))
+    lines = positions[:, upper].astype(np.float64) - positions[:, lower]
+    return np.asarray(np.sqrt(np.einsum("fbc,fbc->fb", lines, lines)))
+
+
+def _unequal_limbs(motion: Motion, usual: Mapping[_Bone, float]) -> Iterator[Caution]:
+    """usual: the median length of each bone in meters."""
+    for bone, left in usual.items():
+        other = (bone[0].mirrored(), bone[1].mirrored())
+        if not bone[0].startswith("left_") or other not in usual:
             continue
-        left, right = (
-            float(np.median(np.linalg.norm(sampled[a] - sampled[b], axis=1))) for a, b in pairs
-        )
+        right = usual[other]
         if min(left, right) < MIN_MIRROR_RATIO * max(left, right):
-            names = [motion.names[motion.roles[role]] for pair in pairs for role in pair]
+            names = [motion.names[motion.roles[role]] for role in (*bone, *other)]
             yield Caution(
                 "limbs_unequal",
                 f"{names[0]} to {names[1]} has {left:.2f} m, but {names[2]} to {names[3]} has"
@@ -71,33 +88,21 @@ def _unequal_limbs(motion: Motion, sampled: dict[JointRole, FloatArray]) -> Iter
             )
 
 
-def _length_jumps(motion: Motion) -> Iterator[Caution]:
-    """A caution for each bone whose length changes as no bone does."""
-    for upper, lower in _bones(motion):
-        ends = motion.positions[:, [motion.roles[upper], motion.roles[lower]]]
-        lengths = np.linalg.norm((ends[:, 0] - ends[:, 1]).astype(np.float64), axis=1)
-        usual = float(np.median(lengths))
-        allowed = max(MAX_LENGTH_CHANGE * usual, MIN_LENGTH_CHANGE)
-        wrong: BoolArray = np.abs(lengths - usual) > allowed
-        if usual <= 0 or not wrong.any():
-            continue
-        names = [motion.names[motion.roles[role]] for role in (upper, lower)]
-        worst = lengths[np.argmax(np.abs(lengths - usual))]
+def _length_jumps(motion: Motion, usual: Mapping[_Bone, float]) -> Iterator[Caution]:
+    """A caution for each bone whose length changes as that of no bone does."""
+    lengths = _lengths(motion.positions, list(usual), motion)
+    medians = np.array(list(usual.values()))
+    allowed = np.maximum(MAX_LENGTH_CHANGE * medians, MIN_LENGTH_CHANGE)
+    changes = np.abs(lengths - medians)
+    wrong = (changes > allowed) & (medians > 0)
+    for index in np.flatnonzero(wrong.any(axis=0)).tolist():
+        names = [motion.names[motion.roles[role]] for role in list(usual)[index]]
+        worst = lengths[np.argmax(changes[:, index]), index]
         yield Caution(
             "bone_length_jumps",
-            f"{names[0]} to {names[1]} has {usual:.2f} m, but {worst:.2f} m in {_frames(wrong)}",
+            f"{names[0]} to {names[1]} has {medians[index]:.2f} m, but {worst:.2f} m in"
+            f" {_frames(wrong[:, index])}",
         )
-
-
-def _bones(motion: Motion) -> Iterator[tuple[JointRole, JointRole]]:
-    sided = (
-        (_R(f"{side}_{upper}"), _R(f"{side}_{lower}"))
-        for side in ("left", "right")
-        for upper, lower in _SIDED
-    )
-    for upper, lower in (*_MIDDLE, *sided):
-        if upper in motion.roles and lower in motion.roles:
-            yield upper, lower
 
 
 def _frozen_markers(motion: Motion) -> Iterator[Caution]:

@@ -13,7 +13,7 @@ import numpy as np
 from app.motion.motion import Motion
 from app.motion.roles.joint_roles import JointRole
 from app.motion.skeleton.recording import Caution
-from app.numerics.arrays import FloatArray
+from app.numerics.arrays import FloatArray, IntArray
 
 MAX_OPPOSITE = -0.3
 """The largest mean cosine between two directions that count as opposite."""
@@ -24,11 +24,13 @@ _R = JointRole
 _Points = Mapping[JointRole, FloatArray]
 
 
-def side_doubts(motion: Motion, sampled: _Points) -> Iterator[Caution]:
+def side_doubts(motion: Motion, frames: IntArray) -> Iterator[Caution]:
     """A caution if chest and hips, or the named sides and the feet, are opposite.
 
-    sampled: (frames, 3) of each role that was found, in some frames.
+    frames: (n,) the frames in which the sides are measured.
     """
+    positions = motion.positions[frames].astype(np.float64)
+    sampled = {role: positions[:, joint] for role, joint in motion.roles.items()}
     if _R.NECK not in sampled:
         return
     up = _unit(sampled[_R.NECK] - sampled[_R.HIPS])

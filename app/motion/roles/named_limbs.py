@@ -117,6 +117,8 @@ def _start_of_limb(
     straight; those through a helper joint in the middle of the hips are not.
     """
     above = [joint for joint in tree.above(next_joint)[1:] if joint in joints]
+    if len(above) == 1:
+        return above[0]
     straight = [joint for joint in above if _is_straight(joint, next_joint, tree, positions)]
     return straight[-1] if straight else above[0]
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -70,6 +71,15 @@ def moving(
         translations=None,
         frame_rate=30.0,
     )
+
+
+def without_rest(recording: Recording) -> Recording:
+    """The same movement as positions alone, as C3D and NPY have it."""
+    middle = np.median(recording.positions, axis=0).astype(np.float64)
+    parents = recording.skeleton.parents
+    offsets = np.where(parents[:, None] < 0, middle, middle - middle[parents])
+    skeleton = Skeleton(recording.skeleton.names, parents, offsets)
+    return Recording("npz", skeleton, recording.positions, None, None, 30.0)
 
 
 HUMAN_NAMES = {
@@ -186,6 +196,11 @@ ANIMALS: dict[str, Recording] = {
     "dinosaur": moving(biped(leg=0.5, arm=0.2, extra=TAIL, trunk_forward=0.95)),
 }  # fmt: skip
 
+ANIMALS |= {
+    f"{name} in a file of positions": without_rest(ANIMALS[name])
+    for name in ("dog with human names", "elephant", "dragon", "bird", "spider")
+}
+
 
 def _crawling(leg: float, pitch: float = 80.0) -> Recording:
     """A person on hands and knees: the rest pose is upright and the root leans forward."""
@@ -211,13 +226,44 @@ def _crawling(leg: float, pitch: float = 80.0) -> Recording:
     )
 
 
-def without_rest(recording: Recording) -> Recording:
-    """The same movement as positions alone, as C3D and NPY have it."""
-    middle = np.median(recording.positions, axis=0).astype(np.float64)
-    parents = recording.skeleton.parents
-    offsets = np.where(parents[:, None] < 0, middle, middle - middle[parents])
-    skeleton = Skeleton(recording.skeleton.names, parents, offsets)
-    return Recording("npz", skeleton, recording.positions, None, None, 30.0)
+def _posed(angles: Mapping[str, tuple[float, float, float]], height: float) -> Recording:
+    """A person with turned joints, in degrees, who sways a little."""
+    recording = moving(biped(), speed=0, height=height)
+    names, rotations = recording.skeleton.names, recording.rotations
+    assert rotations is not None
+    turns = np.array(rotations, dtype=np.float64)
+    for name, angle in angles.items():
+        turns[:, names.index(name)] = euler_to_quaternions(np.radians(angle), "XYZ")
+    roots = recording.positions[:, 0].astype(np.float64)
+    translations = local_translations(recording.skeleton, roots)
+    positions = forward_kinematics(recording.skeleton, turns, translations)
+    return replace(
+        recording, positions=positions.astype(np.float32), rotations=turns.astype(np.float32)
+    )
+
+
+def _sitting(seat: float) -> Recording:
+    """A person whose thighs are level. seat: the height of the hips in meters."""
+    bend = 90 if seat > 0.3 else 0
+    legs = {f"{side}_Thigh": (-90.0, 0.0, 0.0) for side in "LR"}
+    legs |= {f"{side}_Calf": (float(bend), 0.0, 0.0) for side in "LR"}
+    return _posed(legs, seat - 0.94)
+
+
+def _turning() -> Recording:
+    """A person who turns sideways over hands and feet again and again."""
+    recording = moving(biped(), frames=90)
+    assert recording.rotations is not None
+    turns = np.array(recording.rotations, dtype=np.float64)
+    angles: FloatArray = np.zeros((90, 3))
+    angles[:, 2] = np.linspace(0, 6 * np.pi, 90)
+    turns[:, 0] = euler_to_quaternions(angles, "XYZ")
+    roots = recording.positions[:, 0].astype(np.float64)
+    translations = local_translations(recording.skeleton, roots)
+    positions = forward_kinematics(recording.skeleton, turns, translations)
+    return replace(
+        recording, positions=positions.astype(np.float32), rotations=turns.astype(np.float32)
+    )
 
 
 PEOPLE: dict[str, Recording] = {
@@ -226,6 +272,9 @@ PEOPLE: dict[str, Recording] = {
     "crawling in a file of positions": without_rest(_crawling(0.84)),
     "crawling child": _crawling(0.6),
     "on hands and feet": moving(biped(), pitch=100),
+    "turning cartwheels": _turning(),
+    "sitting on a chair": _sitting(0.45),
+    "sitting on the floor": _sitting(0.1),
     "standing on the hands": moving(biped(), pitch=180, speed=0),
     "lying": moving(biped(), pitch=90, height=-0.85, speed=0),
     "cartoon with short legs": moving(biped(leg=0.44)),
