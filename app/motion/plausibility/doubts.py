@@ -19,7 +19,7 @@ from app.motion.skeleton.occlusion import runs
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import BoolArray, FloatArray
 
-MAX_SAMPLED_FRAMES = 128
+MAX_SAMPLED_FRAMES = 64
 """The most frames, evenly spaced, in which lengths and sides are measured."""
 MIN_MIRROR_RATIO = 0.75
 """The smallest ratio of the lengths of a left and a right bone (shorter / longer)."""

@@ -14,7 +14,7 @@ of a role have an order, and the first one that a skeleton has is used.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Literal
@@ -67,6 +67,8 @@ _SIDES: dict[str, Side] = {
 }  # fmt: skip
 _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 _NUMBER = re.compile(r"(?<=[a-z])\d+$")
+KEPT_SKELETONS = 64
+"""The joints of so many skeletons are kept, because many clips have the same one."""
 _MIDDLE_WITH_NUMBER = (JointRole.NECK, JointRole.HEAD)
 """Roles of the middle for which `neck2` may stand. The number of a spine joint has a meaning."""
 
@@ -79,15 +81,20 @@ class NamedJoint:
     rank: int
 
 
-def joints_by_name(names: Sequence[str]) -> dict[JointRole, list[NamedJoint]]:
+def joints_by_name(names: Sequence[str]) -> Mapping[JointRole, Sequence[NamedJoint]]:
     """The joints that each role may have by their names, the best alias first.
 
     names: (joints,) parents come before their children. Of the joints with one alias, those whose
     names have no number come first, and then those nearest to a root. Blender adds numbers to the
     names of copies, and programs add them to the parts of a split limb.
     """
+    return _joints_by_name(tuple(names))
+
+
+@lru_cache(maxsize=KEPT_SKELETONS)
+def _joints_by_name(names: tuple[str, ...]) -> Mapping[JointRole, Sequence[NamedJoint]]:
     exact, numbered = _joints_by_key(names)
-    found: dict[JointRole, list[NamedJoint]] = {}
+    found: dict[JointRole, Sequence[NamedJoint]] = {}
     for role, aliases in _aliases_by_role():
         with_number = aliases[0][0] is not None or role in _MIDDLE_WITH_NUMBER
         joints = [
