@@ -46,7 +46,7 @@ from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray
 from app.numerics.tensors.rank1 import Rank1
 
-ANALYSIS_VERSION = 4
+ANALYSIS_VERSION = 5
 """Raise this number if the content of an array changes. Older clips are then analyzed again."""
 
 

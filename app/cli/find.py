@@ -9,7 +9,7 @@ import typer
 
 from app.cli.options import FilterJson, IncludeSelf
 from app.cli.output import AsJson, print_json, print_table
-from app.cli.query_source import FrameRate, Query, Skeleton, Stack, Unit, source_of
+from app.cli.query_source import FrameRate, Query, Skeleton, Stack, Unit, UpAxis, source_of
 from app.cli.settings import open_library
 from app.errors import BadField, Place
 from app.search.example.methods import Method
@@ -57,6 +57,7 @@ def search(
     skeleton: Skeleton = None,
     frame_rate: FrameRate = None,
     unit: Unit = None,
+    up_axis: UpAxis = None,
     stack: Stack = None,
     as_json: AsJson = False,
 ) -> None:
@@ -80,6 +81,7 @@ def search(
                 skeleton=skeleton,
                 frame_rate=frame_rate,
                 unit=unit,
+                up_axis=up_axis,
                 stack=stack,
                 advice=ADVICE,
             ) as source:
@@ -101,6 +103,7 @@ def recognize(
     skeleton: Skeleton = None,
     frame_rate: FrameRate = None,
     unit: Unit = None,
+    up_axis: UpAxis = None,
     stack: Stack = None,
     as_json: AsJson = False,
 ) -> None:
@@ -111,7 +114,12 @@ def recognize(
     with (
         open_library(context) as lib,
         source_of(
-            query, skeleton=skeleton, frame_rate=frame_rate, unit=unit, stack=stack
+            query,
+            skeleton=skeleton,
+            frame_rate=frame_rate,
+            unit=unit,
+            up_axis=up_axis,
+            stack=stack,
         ) as source,
     ):
         request = recognize.RecognizeQuery(source, known_person, known_task, method)

@@ -11,7 +11,7 @@ import typer
 from app.cli.find import filter_of
 from app.cli.options import FilterJson, IncludeSelf
 from app.cli.output import AsJson, print_json, print_table
-from app.cli.query_source import FrameRate, Skeleton, Stack, Unit, source_of
+from app.cli.query_source import FrameRate, Skeleton, Stack, Unit, UpAxis, source_of
 from app.cli.settings import open_library
 from app.errors import BadField, Place
 from app.search.pose.pose_matches import MatchesPerClip
@@ -41,6 +41,7 @@ def search_pose(
     skeleton: Skeleton = None,
     frame_rate: FrameRate = None,
     unit: Unit = None,
+    up_axis: UpAxis = None,
     stack: Stack = None,
     as_json: AsJson = False,
 ) -> None:
@@ -57,7 +58,12 @@ def search_pose(
             hits = find_pose(lib, PoseQuery(None, time, pose, places, limit, fields))
         else:
             with source_of(
-                query, skeleton=skeleton, frame_rate=frame_rate, unit=unit, stack=stack
+                query,
+                skeleton=skeleton,
+                frame_rate=frame_rate,
+                unit=unit,
+                up_axis=up_axis,
+                stack=stack,
             ) as source:
                 hits = find_pose(
                     lib, PoseQuery(source, time, None, places, limit, fields, include_self)

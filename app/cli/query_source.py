@@ -32,6 +32,10 @@ Unit = Annotated[
     str | None, typer.Option(help="Unit of the file: m, cm, mm, in, or meters per unit.")
 ]
 
+UpAxis = Annotated[
+    str | None, typer.Option(help="Axis of the file that points up: x, y, z, -x, -y or -z.")
+]
+
 
 @contextmanager
 def source_of(
@@ -42,6 +46,7 @@ def source_of(
     skeleton: Path | None = None,
     frame_rate: float | None = None,
     unit: str | None = None,
+    up_axis: str | None = None,
     stack: str | None = None,
     advice: str = "",
 ) -> Iterator[QuerySource]:
@@ -66,6 +71,7 @@ def source_of(
             skeleton=skeleton_content,
             frame_rate=frame_rate,
             unit=unit,
+            up_axis=up_axis,
             stack=stack,
         )
         try:

@@ -16,7 +16,9 @@ from app.errors import BadField, Place
 from app.formats.common.names import MAX_NAME_LENGTH
 from app.models.words.language.normalize import normalize_word, normalize_words
 from app.motion.canonical.units import METERS_PER_UNIT, SCALES
+from app.motion.canonical.up_axis import UP_AXES
 from app.motion.roles.joint_roles import JointRole
+from app.motion.roles.roles import MAX_JOINTS_OF_MIDDLE
 from app.motion.skeleton.recording import FRAME_RATES
 from app.store.clips.record import AnalysisHints, ClipChanges, ClipLabels
 
@@ -107,8 +109,21 @@ def metres_per_unit(value: float | str | None) -> float | None:
     return number
 
 
-def roles(value: Mapping[str, str] | None) -> dict[str, str] | None:
-    """Joint names by role; each key must be a JointRole, each value a name. Empty is None."""
+def up_axis(value: str | None) -> str | None:
+    """The axis of the file that points up: x, y, z, -x, -y or -z; an empty string is None."""
+    axis = text("up_axis", value)
+    if axis is None:
+        return None
+    if axis.lower() not in UP_AXES:
+        raise bad_field("up_axis", f"must be one of {', '.join(UP_AXES)}")
+    return axis.lower()
+
+
+def roles(value: Mapping[str, str | list[str]] | None) -> dict[str, str | list[str]] | None:
+    """Joint names by role; each key must be a JointRole. Empty is None.
+
+    A value is the name of a joint, or a list of two names: the role is the middle of both.
+    """
     if value is None:
         return None
     if not isinstance(value, Mapping):
@@ -118,7 +133,10 @@ def roles(value: Mapping[str, str] | None) -> dict[str, str] | None:
         if role not in role_names:
             message = f"is not a joint role; the roles are {sorted(role_names)}"
             raise bad_field(f"roles.{role}", message)
-        if not isinstance(joint, str) or not 0 < len(joint) <= MAX_JOINT_NAME:
+        names = [joint] if isinstance(joint, str) else joint
+        if not isinstance(names, list) or not 1 <= len(names) <= MAX_JOINTS_OF_MIDDLE:
+            raise bad_field(f"roles.{role}", "must be the name of one joint, or a list of two")
+        if not all(isinstance(name, str) and 0 < len(name) <= MAX_JOINT_NAME for name in names):
             message = f"must be the name of a joint, of at most {MAX_JOINT_NAME} characters"
             raise bad_field(f"roles.{role}", message)
     return dict(value) or None
@@ -210,6 +228,7 @@ UNIT = "unit"
 HINTS: Mapping[str, Check] = {
     "frame_rate": frame_rate,
     UNIT: metres_per_unit,
+    "up_axis": up_axis,
     "roles": roles,
     "stack": partial(text, "stack"),
     "audio_offset": audio_offset,

@@ -7,6 +7,7 @@ from typing import Annotated, Any, TypeVar
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
 from app.motion.roles.joint_roles import JointRole
+from app.motion.roles.roles import MAX_JOINTS_OF_MIDDLE
 from app.search.index.filters import MAX_LABEL_LENGTH, MAX_LABELS
 from app.services import fields
 from app.services.views.frame_rates import MAX_FPS, MIN_FPS
@@ -76,14 +77,13 @@ Cursor = Annotated[
 ]
 Id = Annotated[str, Field(min_length=1, max_length=100)]
 """The id of a clip or another object."""
+_JointName = Annotated[str, Field(min_length=1, max_length=fields.MAX_JOINT_NAME)]
+_TwoJoints = Annotated[list[_JointName], Field(min_length=1, max_length=MAX_JOINTS_OF_MIDDLE)]
 Roles = Annotated[
-    dict[
-        Annotated[str, Field(max_length=30)],
-        Annotated[str, Field(min_length=1, max_length=fields.MAX_JOINT_NAME)],
-    ],
+    dict[Annotated[str, Field(max_length=30)], _JointName | _TwoJoints],
     Field(max_length=len(JointRole)),
 ]
-"""Joint names by joint role."""
+"""Joint names by joint role. Two names are for the middle of two joints."""
 Seconds = Annotated[float, Field(ge=0, le=1e6)]
 
 PROBABILITY_DIGITS = 4

@@ -62,8 +62,21 @@ Unit = Annotated[
         description="m, dm, cm, mm, in, ft, cmu (unit of the CMU files), or meters per unit.",
     ),
 ]
+UpAxis = Annotated[
+    Literal["x", "y", "z", "-x", "-y", "-z"],
+    Field(
+        description="The axis of the file that points up. Without it, the axis that the file says"
+        " is used, else the one along which the body stands: then the clip has the warning"
+        " `up_axis_guessed`."
+    ),
+]
 FormRoles = Annotated[
-    Json[Roles] | None, Field(description='JSON: joint name by role, as in {"hips": "Pelvis"}.')
+    Json[Roles] | None,
+    Field(
+        description='JSON: joint name by role, as in {"hips": "Pelvis"}; a list of two names is for'
+        ' their middle, as in {"hips": ["LHip", "RHip"]}. A body that seems to be an animal is'
+        " refused as `skeleton_not_human`, with the reasons, unless roles are sent."
+    ),
 ]
 
 Offset = Annotated[float, Field(ge=-MAX_OFFSET, le=MAX_OFFSET)]
@@ -149,6 +162,7 @@ class ClipForm(Incoming):
     source: Label | None = None
     frame_rate: FileFrameRate = None
     unit: Unit = None
+    up_axis: UpAxis | None = None
     roles: FormRoles = None
     stack: Stack | None = None
     audio_offset: Offset | None = Field(None, description=f"{_OFFSET} Default: estimated.")
@@ -173,6 +187,11 @@ class ClipPatch(Incoming):
     source: Label | None = None
     frame_rate: FrameRate | None = Field(
         None, description="The clip is analyzed again. null restores the declared frame rate."
+    )
+    up_axis: UpAxis | None = Field(
+        None,
+        description="The axis of the file that points up. The clip is analyzed again. With null, it"
+        " is found as after an upload.",
     )
     stack: Label | None = Field(
         None,

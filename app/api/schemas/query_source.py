@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import fields as fields_of
 
 from app.api.schemas.base import Id, Incoming
-from app.api.schemas.clips import FileFrameRate, FormRoles, Stack, Unit
+from app.api.schemas.clips import FileFrameRate, FormRoles, Stack, Unit, UpAxis
 from app.services.find.query_source import QuerySource
 from app.store.files.files import Readable
 
@@ -31,5 +31,6 @@ class QueryForm(QueryFields):
     clip_id: ClipId | None = None
     unit: Unit = None
     frame_rate: FileFrameRate = None
+    up_axis: UpAxis | None = None
     roles: FormRoles = None
     stack: Stack | None = None

@@ -156,6 +156,7 @@ def _recording(
         translations=solved.translations,
         frame_rate=timing.frame_rate,
         up_axis="y",
+        is_up_axis_said="UpAxis" in scene.settings,
         metres_per_unit=factor if SCALES[0] <= factor <= SCALES[1] else None,
         cautions=cautions,
     )

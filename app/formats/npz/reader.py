@@ -19,6 +19,7 @@ exactly one fits the body (`joint_layouts.py`). Otherwise joints are called `joi
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -88,7 +89,7 @@ def _read_positions(arrays: NamedArrays) -> Recording:
         positions,
         _frame_rate(arrays),
         unit=_unit(arrays),
-        up_axis=_up_axis(arrays) or "y",
+        up_axis=_up_axis(arrays),
         cautions=cautions,
     )
 
@@ -107,12 +108,14 @@ def _read_parameters(arrays: NamedArrays) -> Recording:
     if poses.ndim == 2 and len(poses) * 24 > MAX_JOINT_FRAMES:
         raise too_large("poses", f"expected at most {MAX_JOINT_FRAMES} joints times frames")
     trans = arrays.numbers("trans")
-    return read_smpl(
+    up_axis = _up_axis(arrays)
+    recording = read_smpl(
         _checked_numbers(poses, arrays.key("poses")),
         None if trans is None else _checked_numbers(trans, arrays.key("trans")),
         _frame_rate(arrays),
-        _up_axis(arrays) or "z",
+        up_axis or "z",
     )
+    return replace(recording, is_up_axis_said=up_axis is not None)
 
 
 def _checked_positions(array: NDArray[Any] | None, key: str) -> FloatArray:
@@ -242,7 +245,7 @@ def _recording(
     frame_rate: float | None,
     *,
     unit: float | None = None,
-    up_axis: str = "y",
+    up_axis: str | None = None,
     cautions: tuple[Caution, ...] = (),
 ) -> Recording:
     """A recording in which each joint comes after its parent."""
@@ -258,7 +261,8 @@ def _recording(
         rotations=None,
         translations=None,
         frame_rate=frame_rate,
-        up_axis=up_axis,
+        up_axis=up_axis or "y",
+        is_up_axis_said=up_axis is not None,
         metres_per_unit=unit,
         cautions=cautions,
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,14 +11,23 @@ import numpy as np
 from app.errors import BadField, NotHuman, Place, Unreadable
 from app.motion.canonical.extent import check_extent
 from app.motion.canonical.frame_rate import judge_frame_rate
+from app.motion.canonical.part_bodies import (
+    is_lower_body,
+    is_upper_body,
+    with_estimated_joints,
+)
 from app.motion.canonical.units import SCALES, Unit, confirm_unit, judge_unit
-from app.motion.canonical.up_axis import judge_up_axis, to_y_up
+from app.motion.canonical.up_axis import UP_AXES, judge_up_axis, to_y_up
 from app.motion.motion import Motion
+from app.motion.plausibility.animals import refuse_animals
+from app.motion.plausibility.doubts import doubts_about
 from app.motion.roles.bodies import roles_of_one_body
 from app.motion.roles.joint_roles import ESSENTIAL_ROLES, SUN_ROLES, JointRole
+from app.motion.roles.middles import with_given_middles, with_missing_middles
 from app.motion.roles.roles import given_roles
 from app.motion.skeleton.kinematics import rest_positions
 from app.motion.skeleton.recording import FRAME_RATES, Caution, Recording
+from app.numerics.arrays import FloatArray
 
 
 def canonicalize(
@@ -26,44 +35,62 @@ def canonicalize(
     *,
     frame_rate: float | None = None,
     metres_per_unit: float | None = None,
-    roles: Mapping[JointRole, str] | Mapping[str, str] | None = None,
+    up_axis: str | None = None,
+    roles: Mapping[JointRole, str | Sequence[str]]
+    | Mapping[str, str | Sequence[str]]
+    | None = None,
 ) -> Motion:
     """The motion of a recording in meters, Y up, right-handed, with roles, rate and unit.
 
-    frame_rate (Hz), metres_per_unit and roles (the joint name of each role) are hints of a client.
-    They have priority over the file. Raises BadField if a hint is impossible, NotHuman if essential
-    roles are missing, Unreadable if there is no usable frame rate, and BadContent if the body is
-    larger or faster than any human.
+    frame_rate (Hz), metres_per_unit, up_axis and roles (the joint name of each role, or two for
+    their middle) are hints of a client. They have priority over the file. Raises BadField if a hint
+    is impossible, NotHuman if essential roles are missing or the body is an animal's, Unreadable if
+    there is no usable frame rate, and BadContent if the body is larger or faster than any human.
     """
-    names, parents = recording.skeleton.names, recording.skeleton.parents
     rate = _active_rate(recording, frame_rate)
-    given = given_roles(names, {str(role): name for role, name in (roles or {}).items()})
-    found, others = roles_of_one_body(names, parents, recording.positions, given)
-    missing = _missing_roles(found)
-    up_axis = judge_up_axis(
-        recording.positions, rest_positions(recording.skeleton), found, recording.up_axis
+    said = {str(role): joints for role, joints in (roles or {}).items()}
+    recording, given = with_given_middles(recording, given_roles(recording.skeleton.names, said))
+    found, others = roles_of_one_body(
+        recording.skeleton.names, recording.skeleton.parents, recording.positions, given
     )
+    recording, found, made = with_missing_middles(recording, found)
+    missing = _missing_roles(found)
+    axis, axis_cautions = _active_up_axis(recording, found, up_axis)
     unit = _active_unit(recording, found, metres_per_unit)
-    positions = to_y_up(recording.positions, up_axis) * np.float32(unit.metres_per_unit)
+    positions = to_y_up(recording.positions, axis) * np.float32(unit.metres_per_unit)
     motion = Motion(
         format=recording.format,
-        names=names,
-        parents=parents,
+        names=recording.skeleton.names,
+        parents=recording.skeleton.parents,
         positions=np.ascontiguousarray(positions, dtype=np.float32),
         roles=found,
         missing_roles=missing,
         frame_rate=rate,
         declared_frame_rate=recording.frame_rate,
         metres_per_unit=unit.metres_per_unit,
-        cautions=recording.cautions + others + _axis_caution(recording, up_axis) + unit.cautions,
+        cautions=recording.cautions + others + made + axis_cautions + unit.cautions,
     )
+    if not given and all(role in found for role in ESSENTIAL_ROLES):
+        refuse_animals(motion, _rest(recording))
+    motion = with_estimated_joints(motion)
     doubts = (
         check_extent(motion)
+        + doubts_about(motion, is_rigid=_is_rigid(recording))
         + _roles_caution(missing)
         + _assumption(recording, frame_rate)
         + _rate_cautions(motion)
     )
     return _with_cautions(motion, doubts)
+
+
+def _rest(recording: Recording) -> FloatArray | None:
+    """(joints, 3) the rest pose in the axes of the file; None for markers, which have none."""
+    return None if recording.rotations is None else rest_positions(recording.skeleton)
+
+
+def _is_rigid(recording: Recording) -> bool:
+    """Whether the bones have fixed lengths, because only the root moves."""
+    return recording.rotations is not None and recording.translations is None
 
 
 def _active_rate(recording: Recording, hint: float | None) -> float:
@@ -97,14 +124,31 @@ def _within(field: str, value: float, limits: tuple[float, float], unit: str) ->
 
 
 def _missing_roles(found: Mapping[JointRole, int]) -> tuple[JointRole, ...]:
-    """The roles of SUN_ROLES that were not found. Raises NotHuman if one of them is essential."""
+    """The roles of SUN_ROLES that were not found.
+
+    Raises NotHuman if one of them is essential, unless the upper or the lower body is there.
+    """
     essential = [role for role in ESSENTIAL_ROLES if role not in found]
-    if essential:
+    if essential and not (is_lower_body(found) or is_upper_body(found)):
         raise NotHuman(
             f"The skeleton has no joint for: {', '.join(essential)}",
             places=[Place(f"roles.{role}", "expected a joint, found none") for role in essential],
         )
     return tuple(role for role in SUN_ROLES if role not in found)
+
+
+def _active_up_axis(
+    recording: Recording, roles: Mapping[JointRole, int], hint: str | None
+) -> tuple[str, tuple[Caution, ...]]:
+    """The axis that points up: from the client, else as the file says outright, else judged."""
+    if hint is not None:
+        if hint not in UP_AXES:
+            message = f"expected one of {', '.join(UP_AXES)}, found {hint!r}"
+            raise BadField(f"up_axis: {message}", places=[Place("up_axis", message)])
+        return hint, ()
+    if recording.is_up_axis_said:
+        return recording.up_axis, ()
+    return judge_up_axis(recording.positions, _rest(recording), roles, recording.up_axis)
 
 
 def _active_unit(recording: Recording, roles: Mapping[JointRole, int], hint: float | None) -> Unit:
@@ -116,13 +160,6 @@ def _active_unit(recording: Recording, roles: Mapping[JointRole, int], hint: flo
     return judge_unit(recording.positions, roles)
 
 
-def _axis_caution(recording: Recording, up_axis: str) -> tuple[Caution, ...]:
-    if up_axis == recording.up_axis:
-        return ()
-    detail = f"the body stands along {up_axis}, not {recording.up_axis}; turned to Y up"
-    return (Caution("up_axis_guessed", detail),)
-
-
 def _roles_caution(missing: tuple[JointRole, ...]) -> tuple[Caution, ...]:
     if not missing:
         return ()
@@ -130,7 +167,9 @@ def _roles_caution(missing: tuple[JointRole, ...]) -> tuple[Caution, ...]:
 
 
 def _rate_cautions(motion: Motion) -> tuple[Caution, ...]:
-    return tuple(judge_frame_rate(motion.role_positions(), motion.frame_rate))
+    doubted = ("unit_guessed", "lower_body_only", "upper_body_only")
+    is_sure = all(caution.code not in doubted for caution in motion.cautions)
+    return tuple(judge_frame_rate(motion.role_positions(), motion.frame_rate, is_unit_sure=is_sure))
 
 
 def _assumption(recording: Recording, hint: float | None) -> tuple[Caution, ...]:

@@ -8,18 +8,24 @@ large. Five laws are checked that no body can break:
 2. Ground friction. Only friction moves a body sideways. A foot slips if it needs a force larger
    than about the weight on it (coefficient of friction .5 to 1). The demand is the horizontal
    acceleration of the center of mass divided by (g + its vertical acceleration). Ballet, fights
-   and sprints have a high demand for moments; nobody has it for a quarter of the time.
+   and sprints have a high demand for moments; nobody has it for a quarter of the time in which the
+   feet bear about the weight of the body. (A dance of hops has demands of 1 near its flights.)
 3. Support. Only its weight pulls a body down, so it does not fall faster than g.
 4. Speed. Nobody travels faster than a sprinter (Bolt 2009: 12.4 m/s).
 5. Steps. The leg is a pendulum: step frequency x sqrt(leg length / g) is below that of the
    fastest sprinters (about 5 steps/s with legs of .9 m: 1.5).
 
-A rate that is too low only shows in flights, because slow motion breaks no other law.
+6. Slow steps. Nobody walks with steps of ten seconds; slow dances may have some of five.
 
-Real clips at their true rates have a friction demand of at most .39 (n = 372), fall with at most
-1.33 g, have flights of .81 to 1.26 g, and steps of at most 1.09. At twice their rate, a third of
-the clips that still last 3 s are detected, and nine of ten walks. (Gestures of a standing person
-obey each law even at twice their speed.)
+A rate that is too low only shows in flights and slow steps, because slow motion breaks no other
+law.
+
+Real clips at their true rates have a friction demand of at most .38 (n = 381), fall with at most
+1.33 g, have flights of .81 to 1.26 g, and steps of at most 1.09. At twice their rate, a quarter of
+the clips that still last 3 s are detected, and nearly all at four times. (Gestures of a standing
+person obey each law even at twice their speed.)
+
+All laws but the last two depend on the size of the body. If its unit is a guess, they are not used.
 """
 
 from __future__ import annotations
@@ -49,8 +55,9 @@ EDGE = 0.25
 """Seconds at each end that are left out, because the filter is not exact there."""
 FRICTION_QUANTILE, MAX_FRICTION = 75.0, 0.45
 """The percentile of the friction demand, and its largest value (force / weight on the foot)."""
-MIN_WEIGHT = 0.5
-"""The smallest share of the weight by which a force is divided. In flight, the weight is near 0."""
+USUAL_LOAD, MIN_LOADED_SHARE = (0.6, 1.6), 0.5
+"""The load of the feet, in weights of the body, in which friction is judged, and the smallest share
+of frames with such a load."""
 SUPPORT_QUANTILE, MIN_SUPPORT = 2.0, -1.7
 """The percentile of the vertical acceleration, and its smallest value in g."""
 SPEED_QUANTILE, MAX_SPEED = 95.0, 12.5
@@ -72,6 +79,14 @@ sqrt(2) or more."""
 FACTORS = (2.0, 3.0, 4.0, 5.0, 8.0)
 """The usual factors of wrong rates: frames dropped or doubled, or 120 Hz in place of 60 or 30."""
 
+USUAL_RATES = (24.0, 25.0, 30.0, 50.0, 60.0, 100.0, 120.0)
+"""Hz."""
+MIN_PACE, USUAL_PACE = 0.04, 0.5
+"""The smallest step frequency x sqrt(leg length / g) of steps in a walk, and that of a usual walk
+(1.65 steps/s with legs of .9 m)."""
+MIN_SLOW_STEPS, MIN_SLOW_STEP_LENGTH = 3, 0.4
+"""The fewest slow steps, and their shortest length in leg lengths."""
+
 _ROLE = {role: index for index, role in enumerate(SUN_ROLES)}
 
 
@@ -83,15 +98,19 @@ class _Finding:
     reason: str
 
 
-def judge_frame_rate(role_positions: FloatArray, rate: float) -> list[Caution]:
+def judge_frame_rate(
+    role_positions: FloatArray, rate: float, *, is_unit_sure: bool = True
+) -> list[Caution]:
     """Check a frame rate in Hz against the laws of this module.
 
-    role_positions: (frames, 13, 3) in SUN_ROLES order, meters, Y up. The result is empty, or one
-    caution `frame_rate_suspect` with the likely rate.
+    role_positions: (frames, 13, 3) in SUN_ROLES order, meters, Y up. is_unit_sure: whether the
+    meters are no guess. The result is empty, or one caution `frame_rate_suspect` with the likely
+    rate.
     """
     # Converters often insert a rest pose as the first frame.
     positions = np.asarray(role_positions[1:], dtype=np.float64)
-    finding = next(_findings(positions, rate), None)
+    laws = _findings if is_unit_sure else _steps_alone
+    finding = next(laws(positions, rate), None)
     if finding is None:
         return []
     likely = _likely_rate(positions, rate, finding.factor)
@@ -102,8 +121,11 @@ def judge_frame_rate(role_positions: FloatArray, rate: float) -> list[Caution]:
 def _likely_rate(positions: FloatArray, rate: float, factor: float) -> float:
     """The likely rate, by one of FACTORS.
 
-    For a rate that is too low it is the nearest factor; else the first one that breaks no law.
+    For a rate that is too low it is the nearest factor, or the nearest usual rate if that is much
+    larger; else the first one that breaks no law.
     """
+    if factor < 1 / FACTORS[-1]:
+        return min(USUAL_RATES, key=lambda usual: abs(np.log(usual * factor / rate)))
     if factor < 1:
         return rate * min(FACTORS, key=lambda usual: abs(np.log(usual * factor)))
     plausible = (
@@ -181,9 +203,12 @@ def _parabola(height: FloatArray, hips: FloatArray) -> FloatArray | None:
 
 def _friction(acceleration: FloatArray) -> Iterator[_Finding]:
     """acceleration: (frames, 3) that of the center of mass in g."""
-    sideways = np.hypot(acceleration[:, 0], acceleration[:, 2])
-    weight = np.maximum(1 + acceleration[:, 1], MIN_WEIGHT)
-    demand = float(np.percentile(sideways / weight, FRICTION_QUANTILE))
+    load = 1 + acceleration[:, 1]
+    loaded = (load > USUAL_LOAD[0]) & (load < USUAL_LOAD[1])
+    if np.mean(loaded) < MIN_LOADED_SHARE:
+        return
+    sideways = np.hypot(acceleration[loaded, 0], acceleration[loaded, 2])
+    demand = float(np.percentile(sideways / load[loaded], FRICTION_QUANTILE))
     if demand > MAX_FRICTION:
         yield _Finding(
             (demand / MAX_FRICTION) ** 0.5,
@@ -205,20 +230,31 @@ def _speed(velocity: FloatArray) -> Iterator[_Finding]:
         yield _Finding(speed / MAX_SPEED, f"the body travels at {speed:.0f} m/s")
 
 
+def _steps_alone(positions: FloatArray, rate: float) -> Iterator[_Finding]:
+    """The laws that do not need meters: a pace hardly changes with the size of the body."""
+    if len(positions) >= MIN_FLIGHT_FRAMES:
+        yield from _steps(positions, rate)
+
+
 def _steps(positions: FloatArray, rate: float) -> Iterator[_Finding]:
     """positions: (frames, 13, 3) in meters. A step ends when the other foot passes the first."""
     smooth = _low_pass(positions, rate, STEP_CUTOFF)
     leg = _leg_length(positions)
     stride = _fore_aft_of_feet(smooth)
     crossings = np.flatnonzero(np.diff(np.sign(stride)))
-    spans = pairwise(crossings)
-    times = [b - a for a, b in spans if np.abs(stride[a : b + 1]).max() > MIN_STEP_LENGTH * leg]
-    if len(times) < MIN_STEPS:
-        return
-    frequency = rate / float(np.median(times))
-    pace = frequency * (leg / GRAVITY) ** 0.5
-    if pace > MAX_PACE:
-        yield _Finding(pace / MAX_PACE, f"the legs take {frequency:.1f} steps a second")
+    steps = [(b - a, float(np.abs(stride[a : b + 1]).max())) for a, b in pairwise(crossings)]
+    times = [frames for frames, length in steps if length > MIN_STEP_LENGTH * leg]
+    slow = [frames for frames, length in steps if length > MIN_SLOW_STEP_LENGTH * leg]
+    if len(times) >= MIN_STEPS:
+        frequency = rate / float(np.median(times))
+        pace = frequency * (leg / GRAVITY) ** 0.5
+        if pace > MAX_PACE:
+            yield _Finding(pace / MAX_PACE, f"the legs take {frequency:.1f} steps a second")
+    if len(slow) >= MIN_SLOW_STEPS:
+        seconds = float(np.median(slow)) / rate
+        pace = (leg / GRAVITY) ** 0.5 / seconds
+        if pace < MIN_PACE:
+            yield _Finding(pace / USUAL_PACE, f"a step takes {seconds:.0f} s")
 
 
 def _leg_length(positions: FloatArray) -> float:

@@ -35,6 +35,11 @@ MIN_STATURE = 1e-6
 """In any unit. A body with a smaller stature has no size."""
 USUAL_STATURES = (1.35, 2.15)
 """Meters. Outside this range, a caution says that the unit is a guess."""
+CHILD_STATURES = (0.8, 1.35)
+"""Meters. A small person in one unit goes before a giant in another one."""
+_OF_CHILDREN = ("m", "cm", "mm", "in", "ft", "cmu", "dm")
+POWERS_OF_TEN = (1e-4, 10.0, 1e-5, 100.0)
+"""Meters per unit of files that were scaled once too often, by 10 or 100."""
 MAX_GUESSED_FACTOR = 1.6
 """If no unit gives a stature within this factor of the typical one, the body is scaled to it."""
 MAX_DECLARED_FACTOR = 2.5
@@ -81,28 +86,55 @@ def stature(positions: FloatArray, roles: Mapping[JointRole, int]) -> float:
 
 
 def judge_unit(positions: FloatArray, roles: Mapping[JointRole, int]) -> Unit:
-    """The unit by which the stature is nearest to TYPICAL_STATURE.
+    """The unit by which the stature is nearest to TYPICAL_STATURE, if it is a usual one.
 
-    positions: (frames, joints, 3) in the unit of the file. roles: the joint of each role. If no
-    unit fits, the body is scaled to TYPICAL_STATURE. A caution says that the unit is a guess.
+    positions: (frames, joints, 3) in the unit of the file. roles: the joint of each role. Else it
+    is a power of ten of a meter that gives a usual stature, or a unit that gives that of a child,
+    metric ones first, or the nearest unit. If none fits, the body is scaled to TYPICAL_STATURE. A
+    caution says that the unit is a guess.
     """
     height = stature(positions, roles)
     if height < MIN_STATURE:
         detail = "the body has no size, so its unit cannot be guessed; meters are used"
         return Unit(1.0, (Caution("unit_guessed", detail),))
-    scales = np.array(list(METERS_PER_UNIT.values()))
     # Logarithms, because half and twice the stature are equally unusual.
-    distances = np.abs(np.log(height * scales / TYPICAL_STATURE))
-    best = float(scales[np.argmin(distances)])
-    if distances.min() > np.log(MAX_GUESSED_FACTOR):
+    away = {name: _away(height * scale) for name, scale in METERS_PER_UNIT.items()}
+    nearest = min(away, key=lambda name: away[name])
+    if _is_within(USUAL_STATURES, height * METERS_PER_UNIT[nearest]):
+        return Unit(METERS_PER_UNIT[nearest])
+    power = next((p for p in POWERS_OF_TEN if _is_within(USUAL_STATURES, height * p)), None)
+    if power is not None:
+        tall = f"{height * power:.2f} m tall"
+        detail = f"no known unit fits; with {power:g} m per unit the person would be {tall}"
+        return Unit(power, (Caution("unit_guessed", detail, likely=power),))
+    child = next(
+        (n for n in _OF_CHILDREN if _is_within(CHILD_STATURES, height * METERS_PER_UNIT[n])), None
+    )
+    if child is None and away[nearest] > np.log(MAX_GUESSED_FACTOR):
         best = TYPICAL_STATURE / height
         detail = f"no known unit fits; scaled so that the person is {TYPICAL_STATURE} m tall"
         return Unit(best, (Caution("unit_guessed", detail, likely=best),))
-    if USUAL_STATURES[0] <= height * best <= USUAL_STATURES[1]:
-        return Unit(best)
-    name = next(name for name, scale in METERS_PER_UNIT.items() if scale == best)
+    return _doubtful_unit(height, child or nearest, nearest)
+
+
+def _doubtful_unit(height: float, name: str, nearest: str) -> Unit:
+    """The unit `name`, with a caution that also names the unit nearest to a usual stature.
+
+    height: the stature in the unit of the file.
+    """
+    best = METERS_PER_UNIT[name]
     detail = f"in {name} the person would be {height * best:.2f} m tall"
+    if nearest != name:
+        detail += f"; in {nearest}, {height * METERS_PER_UNIT[nearest]:.2f} m"
     return Unit(best, (Caution("unit_guessed", detail, likely=best),))
+
+
+def _away(stature_in_meters: float) -> float:
+    return abs(float(np.log(stature_in_meters / TYPICAL_STATURE)))
+
+
+def _is_within(limits: tuple[float, float], value: float) -> bool:
+    return limits[0] <= value <= limits[1]
 
 
 def confirm_unit(declared: float, positions: FloatArray, roles: Mapping[JointRole, int]) -> Unit:

@@ -35,7 +35,7 @@ _PELVES: tuple[Recipe, ...] = (("LASI", "RASI", "LPSI", "RPSI"), ("LASI", "RASI"
 RECIPES: dict[JointRole, tuple[Recipe, ...]] = {
     _R.HIPS: (*_PELVES, ("LHJC", "RHJC"), ("LASI", "RASI")),
     _R.CHEST: (("STRN", "T10"), ("CLAV", "T10"), ("STRN",), ("T10",)),
-    _R.NECK: (("C7", "CLAV"), ("C7",), ("LSHO", "RSHO"), ("LSJC", "RSJC")),
+    _R.NECK: (("C7", "CLAV"), ("C7",), ("NECK",), ("LSHO", "RSHO"), ("LSJC", "RSJC")),
     _R.HEAD: (
         ("LFHD", "RFHD", "LBHD", "RBHD"), ("TOPHD", "FRONTHD", "REARHD"), ("FRONTHD", "REARHD"),
         ("LBHD", "RBHD"), ("LFHD", "RFHD"), ("TOPHD",),

@@ -50,7 +50,8 @@ ESSENTIAL_ROLES: tuple[JointRole, ...] = (
     JointRole.RIGHT_KNEE,
     JointRole.NECK,
 )
-"""Without these roles there is no body frame. A skeleton without them is refused."""
+"""Without these roles there is no body frame. Only the lower or the upper half of a body may lack
+some of them; else a skeleton without them is refused."""
 
 _R = JointRole
 _TOWARDS_TRUNK: dict[JointRole, JointRole] = {

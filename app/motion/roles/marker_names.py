@@ -11,6 +11,8 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from app.motion.roles.joint_names import side_and_word
+
 # Places on both sides, and their labels; ? is L or R.
 _SIDED: dict[str, tuple[str, ...]] = {
     "ASI": ("?ASI", "?ASIS", "?IAS", "?FWT", "WAIST?FRONT", "?WAISTFRONT"),
@@ -52,6 +54,7 @@ _SIDED: dict[str, tuple[str, ...]] = {
 _MIDDLE: dict[str, tuple[str, ...]] = {
     "SACR": ("SACR", "SACRUM", "VSACRAL", "SACRAL", "MBWT"),
     "C7": ("C7", "CV7", "BACKTOP"),
+    "NECK": ("NECK",),
     "T10": ("T10", "TV10", "TV8"),
     "CLAV": ("CLAV", "CLAVICLE", "SJN", "JN"),
     "STRN": ("STRN", "STERN", "STERNUM", "SXS", "XIPHOID"),
@@ -65,6 +68,8 @@ _PLACES = {alias: place for place, aliases in _MIDDLE.items() for alias in alias
     for alias in aliases
     for side in "LR"
 }
+_UPPER_ARMS = ("arm", "upperarm", "uparm", "armupper", "humerus")
+"""Words for a joint at the upper end of the upper arm."""
 _UNLABELED = re.compile(r"(|\*\d*|U_?\d+|UNLABELL?ED.*|M\d{3,}|UN-?NAMED.*)", re.IGNORECASE)
 _NO_MARKER = re.compile(r".*(Angles?|Forces?|Moments?|Powers?|GRF)$", re.IGNORECASE)
 """Labels of results of gait models, which are stored as points but are not markers."""
@@ -89,10 +94,16 @@ def place_on_body(label: str) -> str | None:
 
 
 def markers_by_place(labels: Sequence[str]) -> dict[str, int]:
-    """The first marker at each place; labels: (markers,) without their subjects."""
+    """The first marker at each place; labels: (markers,) without their subjects.
+
+    In a set of joints, `LeftShoulder` is the collar bone if there is also a `LeftArm`, and no
+    marker on the shoulder.
+    """
+    keys = [side_and_word(label) for label in labels]
+    with_arm = {side for side, word in keys if word in _UPPER_ARMS}
     found: dict[str, int] = {}
-    for marker, label in enumerate(labels):
+    for marker, (label, (side, word)) in enumerate(zip(labels, keys, strict=True)):
         place = place_on_body(label)
-        if place is not None:
+        if place is not None and not (word == "shoulder" and side in with_arm):
             found.setdefault(place, marker)
     return found

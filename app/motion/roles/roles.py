@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import pairwise
+
+import numpy as np
 
 from app.errors import BadField, Place
-from app.motion.roles.joint_names import roles_by_name
+from app.motion.roles.joint_names import joints_by_name, roles_by_name, side_and_word
 from app.motion.roles.joint_roles import JointRole
-from app.motion.roles.topology import roles_by_shape
+from app.motion.roles.named_limbs import limbs_by_name
+from app.motion.roles.topology import MAX_SAMPLED_FRAMES, roles_by_shape
+from app.motion.roles.tree import Tree
+from app.motion.roles.trunk import Trunk
 from app.numerics.arrays import FloatArray, IntArray
 
 _R = JointRole
-_LIMBS: tuple[tuple[JointRole, ...], ...] = (
-    (_R.LEFT_UPPER_LEG, _R.LEFT_KNEE, _R.LEFT_FOOT, _R.LEFT_TOES),
-    (_R.RIGHT_UPPER_LEG, _R.RIGHT_KNEE, _R.RIGHT_FOOT, _R.RIGHT_TOES),
-    (_R.LEFT_SHOULDER, _R.LEFT_ELBOW, _R.LEFT_HAND),
-    (_R.RIGHT_SHOULDER, _R.RIGHT_ELBOW, _R.RIGHT_HAND),
-    (_R.NECK, _R.HEAD),
-)
-"""Chains of roles: each joint must be below the one before it in the tree."""
+MAX_JOINTS_OF_MIDDLE = 2
+"""The most joints that a client may name for one role. Their middle is used."""
 _NEEDED = tuple(role for role in JointRole if role not in (_R.CHEST, _R.LEFT_TOES, _R.RIGHT_TOES))
 """If one of these roles is not found by name, the shape of the body is used."""
 
@@ -34,42 +32,78 @@ def find_roles(
 
     names, parents: (joints,). positions: (frames, joints, 3) in any unit and axes. given: the
     joints of roles that a client named; they have priority. Sides in names have priority over
-    geometry. No joint gets two roles, except by `given`.
+    geometry: no joint gets a role of the other side. No joint gets two roles, except by `given`.
     """
+    tree = Tree(parents)
+    frames = np.unique(np.linspace(0, len(positions) - 1, MAX_SAMPLED_FRAMES).astype(int))
+    sampled = np.asarray(positions[frames], dtype=np.float64)
+    sides = [side_and_word(name)[0] for name in names]
     found = dict(given or {})
-    tree = _Ancestry(parents)
-    _add(found, tree.without_contradictions(roles_by_name(names)))
-    _add(found, tree.trunk_from_limbs(found))
+    _add(found, _by_name(names, tree, sampled))
+    if tree.is_tree():
+        _add_trunk(found, Trunk(tree, sides, sampled).roles(found))
     if any(role not in found for role in _NEEDED):
-        _add_agreeing(found, roles_by_shape(parents, positions))
+        _add_agreeing(found, roles_by_shape(parents, sampled), sides)
     return {role: found[role] for role in JointRole if role in found}
 
 
-def given_roles(names: Sequence[str], mapping: Mapping[str, str]) -> dict[JointRole, int]:
+def _by_name(names: Sequence[str], tree: Tree, positions: FloatArray) -> dict[JointRole, int]:
+    """The roles by name. In a tree, the joints of a limb are below each other."""
+    if not tree.is_tree():
+        return roles_by_name(names)
+    named = joints_by_name(names)
+    found = limbs_by_name(named, tree, positions)
+    for role in (_R.HIPS, _R.CHEST):
+        joints = (each.joint for each in named.get(role, ()))
+        joint = next((joint for joint in joints if joint not in found.values()), None)
+        if joint is not None:
+            found[role] = joint
+    legs = tree.branching(found, _R.LEFT_KNEE)
+    if _R.HIPS in found and legs is not None and found[_R.HIPS] not in tree.above(legs):
+        del found[_R.HIPS]
+    return found
+
+
+def _add_trunk(found: dict[JointRole, int], trunk: Mapping[JointRole, int]) -> None:
+    """Add the roles of the trunk. The neck may be a joint that its name makes the chest."""
+    neck = trunk.get(_R.NECK)
+    if _R.NECK not in found and neck is not None and found.get(_R.CHEST) == neck:
+        del found[_R.CHEST]
+    _add(found, trunk)
+
+
+def given_roles(
+    names: Sequence[str], mapping: Mapping[str, str | Sequence[str]]
+) -> dict[JointRole, tuple[int, ...]]:
     """The joints of a client's mapping of role names to joint names.
 
-    Raises BadField with each unknown role, unknown joint and ambiguous joint.
+    A role has one joint, or two joints whose middle is meant. Raises BadField with each unknown
+    role, unknown joint and ambiguous joint.
     """
-    found: dict[JointRole, int] = {}
+    found: dict[JointRole, tuple[int, ...]] = {}
     places: list[Place] = []
-    for role, name in mapping.items():
-        problem = _problem(names, role, name)
+    for role, said in mapping.items():
+        joints = [said] if isinstance(said, str) else list(said)
+        problem = _problem(names, role, joints)
         if problem:
             places.append(Place(f"roles.{role}", problem))
         else:
-            found[JointRole(role)] = list(names).index(name)
+            found[JointRole(role)] = tuple(list(names).index(name) for name in joints)
     if places:
         raise BadField("The mapping of joint roles does not fit the skeleton", places=places)
     return found
 
 
-def _problem(names: Sequence[str], role: str, name: str) -> str | None:
+def _problem(names: Sequence[str], role: str, joints: Sequence[str]) -> str | None:
     if role not in tuple(JointRole):
         return f"expected one of {', '.join(JointRole)}"
-    count = list(names).count(name)
-    if count == 1:
-        return None
-    return f"expected the name of one joint, found {count} joints named {name!r}"
+    if not 1 <= len(joints) <= MAX_JOINTS_OF_MIDDLE:
+        return f"expected one joint, or two for their middle, found {len(joints)}"
+    for name in joints:
+        count = list(names).count(name)
+        if count != 1:
+            return f"expected the name of one joint, found {count} joints named {name!r}"
+    return None
 
 
 def _add(found: dict[JointRole, int], more: Mapping[JointRole, int]) -> None:
@@ -79,68 +113,27 @@ def _add(found: dict[JointRole, int], more: Mapping[JointRole, int]) -> None:
             found[role] = joint
 
 
-def _add_agreeing(found: dict[JointRole, int], shape: Mapping[JointRole, int]) -> None:
-    """Add roles by shape. If they contradict the sides in `found`, left and right are exchanged."""
+def _add_agreeing(
+    found: dict[JointRole, int], shape: Mapping[JointRole, int], sides: Sequence[str | None]
+) -> None:
+    """Add roles by shape. If they contradict the sides in names, left and right are exchanged.
+
+    sides: (joints,) the side in each joint's name. A role that still contradicts is left out.
+    """
     swapped = any(
         role in found and role.mirrored() != role and shape.get(role.mirrored()) == joint
         for role, joint in found.items()
     )
-    _add(found, {r.mirrored(): j for r, j in shape.items()} if swapped else shape)
+    against = sum(_contradicts(role, sides[joint]) for role, joint in shape.items())
+    agreeing = sum(_agrees(role, sides[joint]) for role, joint in shape.items())
+    if swapped or against > agreeing:
+        shape = {role.mirrored(): joint for role, joint in shape.items()}
+    _add(found, {r: j for r, j in shape.items() if not _contradicts(r, sides[j])})
 
 
-class _Ancestry:
-    """The parents of joints, for questions about ancestors."""
+def _agrees(role: JointRole, side: str | None) -> bool:
+    return side is not None and role.startswith(f"{side}_")
 
-    def __init__(self, parents: IntArray) -> None:
-        self.parents = [int(parent) for parent in parents]
 
-    def above(self, joint: int) -> list[int]:
-        """The joint, then its ancestors, the nearest one first."""
-        found = []
-        while joint >= 0:
-            found.append(joint)
-            joint = self.parents[joint]
-        return found
-
-    def is_tree(self) -> bool:
-        """Whether some joints have parents. Markers have none, so only their names can be used."""
-        return any(parent >= 0 for parent in self.parents)
-
-    def without_contradictions(self, named: dict[JointRole, int]) -> dict[JointRole, int]:
-        """`named` without limbs whose joints are not below each other in the tree.
-
-        The hips are removed if they are not above both legs.
-        """
-        if not self.is_tree():
-            return named
-        good = dict(named)
-        for limb in _LIMBS:
-            chain = [role for role in limb if role in good]
-            if any(good[upper] not in self.above(good[lower]) for upper, lower in pairwise(chain)):
-                for role in chain:
-                    del good[role]
-        hips, branching = good.get(_R.HIPS), self._branching(good, _R.LEFT_KNEE)
-        if hips is not None and branching is not None and hips not in self.above(branching):
-            del good[_R.HIPS]
-        return good
-
-    def trunk_from_limbs(self, found: Mapping[JointRole, int]) -> dict[JointRole, int]:
-        """The hips, where the legs meet; the neck, below the head or where the arms meet."""
-        trunk: dict[JointRole, int] = {}
-        legs, arms = (self._branching(found, r) for r in (_R.LEFT_KNEE, _R.LEFT_SHOULDER))
-        if legs is not None:
-            trunk[_R.HIPS] = legs
-        hips = found.get(_R.HIPS, legs)
-        head = found.get(_R.HEAD)
-        below_head = self.parents[head] if head is not None else -1
-        for joint in (below_head, -1 if arms is None else arms):
-            if joint >= 0 and joint != hips and joint not in found.values():
-                trunk.setdefault(_R.NECK, joint)
-        return trunk
-
-    def _branching(self, roles: Mapping[JointRole, int], left: JointRole) -> int | None:
-        """The lowest joint that is above both a left role and its mirrored role."""
-        if left not in roles or left.mirrored() not in roles:
-            return None
-        other = set(self.above(roles[left.mirrored()]))
-        return next((joint for joint in self.above(roles[left]) if joint in other), None)
+def _contradicts(role: JointRole, side: str | None) -> bool:
+    return side is not None and role.mirrored() is not role and not role.startswith(f"{side}_")

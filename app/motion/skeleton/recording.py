@@ -33,8 +33,9 @@ class Recording:
     format has none (markers). translations: (frames, joints, 3) float32 local translations if they
     change over time (joints of six channels); None means the skeleton's offsets and the motion of
     the root. frame_rate: Hz as declared, None if the file does not give it. up_axis: "x", "y" or
-    "z", as declared. metres_per_unit: None if the file does not give it. assumed_frame_rate: Hz,
-    the usual rate of the format, if the file does not give one and nearly all files agree.
+    "z", as declared or as usual in the format. is_up_axis_said: whether the file itself says it, so
+    that it is never judged. metres_per_unit: None if the file does not give it. assumed_frame_rate:
+    Hz, the usual rate of the format, if the file does not give one and nearly all files agree.
     """
 
     format: str
@@ -47,3 +48,4 @@ class Recording:
     metres_per_unit: float | None = None
     cautions: tuple[Caution, ...] = ()
     assumed_frame_rate: float | None = None
+    is_up_axis_said: bool = False

@@ -49,6 +49,7 @@ def analysis_request(lib: Library, clip: ClipRecord) -> AnalysisRequest:
         stack=hints.stack,
         frame_rate=hints.frame_rate,
         metres_per_unit=hints.metres_per_unit,
+        up_axis=hints.up_axis,
         roles=hints.roles,
         thresholds=_thresholds(lib),
         audio_path=None if audio is None else _place(lib, audio, "recording"),

@@ -99,6 +99,7 @@ def analysis_request(source: QuerySource, max_bytes: int) -> AnalysisRequest:
         stack=fields.text("stack", source.stack),
         frame_rate=fields.frame_rate(source.frame_rate),
         metres_per_unit=fields.metres_per_unit(source.unit),
+        up_axis=fields.up_axis(source.up_axis),
         roles=fields.roles(source.roles),
         for_search=True,
     )

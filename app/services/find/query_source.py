@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from app.store.files.files import Readable
 
-UPLOAD_ONLY = ("skeleton", "frame_rate", "unit", "roles", "stack")
+UPLOAD_ONLY = ("skeleton", "frame_rate", "unit", "up_axis", "roles", "stack")
 """Fields of a QuerySource that describe an uploaded file. A stored clip has its own."""
 
 
@@ -21,7 +21,8 @@ class QuerySource:
 
     start, end: seconds, the selected part; None is the motion's own start or end.
     skeleton: the ASF file that an AMC file needs; frame_rate: Hz; unit: a name, or meters in one
-    unit; roles: joint names by role; stack: the animation stack of an FBX file.
+    unit; up_axis: of the file; roles: joint names by role; stack: the animation stack of an FBX
+    file.
     """
 
     clip_id: str | None = None
@@ -31,7 +32,8 @@ class QuerySource:
     skeleton: Readable | None = None
     frame_rate: float | str | None = None
     unit: float | str | None = None
-    roles: Mapping[str, str] | None = None
+    up_axis: str | None = None
+    roles: Mapping[str, str | list[str]] | None = None
     stack: str | None = None
 
     @property

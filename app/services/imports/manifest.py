@@ -1,10 +1,10 @@
 """manifest.csv: the labels, hints, keyposes and recordings of the files in an import.
 
 Columns: `path` (relative to the manifest), and any of `name person task words license source
-fps unit keyposes audio audio_offset tempo beats`; `frame_rate` is another name of `fps`. Words are
-separated by spaces, a phrase has underscores; keyposes and beats are seconds, separated by spaces;
-audio is a path like `path`. Other columns are ignored. A bad row does not fail the import: its
-problem is reported with its file.
+fps unit up_axis keyposes audio audio_offset tempo beats`; `frame_rate` is another name of `fps`.
+Words are separated by spaces, a phrase has underscores; keyposes and beats are seconds, separated
+by spaces; audio is a path like `path`. Other columns are ignored. A bad row does not fail the
+import: its problem is reported with its file.
 
 `manifest_table` reads a manifest as a stream. Only the text of each row is kept in memory; it is
 checked when its file is registered.

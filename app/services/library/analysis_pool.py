@@ -50,10 +50,10 @@ class AnalysisRequest:
     """What to analyze: `content`, or the file at `path`; with the client's hints.
 
     skeleton, skeleton_path: content or path of the ASF file that an AMC file needs; stack: the
-    animation stack of an FBX file; thresholds: T1 and T2 of keyposes, None for the default
-    ones; frame_rate: Hz; roles: joint names by role name; audio_path: a recording of sound;
-    beats, tempo, audio_offset: the rhythm as the client gives it (seconds, beats a minute,
-    seconds); for_search: compute only what searches need.
+    animation stack of an FBX file; thresholds: T1 and T2 of keyposes, None for the default ones;
+    frame_rate: Hz; up_axis: of the file; roles: joint names by role name; audio_path: a recording
+    of sound; beats, tempo, audio_offset: the rhythm as the client gives it (seconds, beats a
+    minute, seconds); for_search: compute only what searches need.
     """
 
     content: bytes | None = None
@@ -64,7 +64,8 @@ class AnalysisRequest:
     thresholds: tuple[float, float] | None = None
     frame_rate: float | None = None
     metres_per_unit: float | None = None
-    roles: Mapping[str, str] | None = None
+    up_axis: str | None = None
+    roles: Mapping[str, str | list[str]] | None = None
     audio_path: str | None = None
     beats: tuple[float, ...] | None = None
     tempo: float | None = None
@@ -200,6 +201,7 @@ def analyze_file(request: AnalysisRequest, limits: Limits) -> Analysis:
             recording,
             frame_rate=request.frame_rate,
             metres_per_unit=request.metres_per_unit,
+            up_axis=request.up_axis,
             roles=roles or None,
         )
     if request.for_search:

@@ -70,8 +70,15 @@ def material_of(lib: Library, model: Synthesis, plan: Plan) -> Material:
         take_shape=take_shape,
         license=licenses.pop() if len(licenses) == 1 else None,
         words=tuple(sorted(words)),
-        roles=own[0].hints.roles,
+        roles=_roles_of_joints(own[0]),
     )
+
+
+def _roles_of_joints(clip: ClipRecord) -> dict[str, str] | None:
+    """The client's roles; None if one is the middle of two joints, which only markers have."""
+    roles = clip.hints.roles or {}
+    joints = {role: joint for role, joint in roles.items() if isinstance(joint, str)}
+    return joints if joints and len(joints) == len(roles) else None
 
 
 def _still_ready(lib: Library, clip_ids: list[str]) -> list[ClipRecord]:

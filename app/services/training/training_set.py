@@ -11,6 +11,7 @@ from app.analysis.symbols.symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.models.folds import recording_of
 from app.models.metric.learned_metric import INPUTS, ClipDescriptors
 from app.models.recognition.views import full_samples
+from app.motion.roles.joint_roles import ESSENTIAL_ROLES
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm.model import GaussianHMM
 from app.search.index import usable_arrays
@@ -102,7 +103,7 @@ def ready_only(filter: ClipFilter | None) -> ClipFilter:
 def read_training_set(store: Store, filter: ClipFilter = READY) -> TrainingSet:
     """Read all clips that pass the filter (by default the ready ones) in one snapshot.
 
-    Synthesized clips are left out, since models must not learn from them.
+    Synthesized clips and parts of bodies are left out, since models must not learn from them.
     """
     with store.read() as tx:
         version = library.version(tx)
@@ -111,7 +112,7 @@ def read_training_set(store: Store, filter: ClipFilter = READY) -> TrainingSet:
         whole = [clip_id for clip_id in ids if all(clip_id in part for part in found.values())]
         records = clips.get_many(tx, whole)
         angles = usable_arrays.get_many(tx, whole, ANGLES)
-    whole = [clip_id for clip_id in whole if not is_synthesized(records[clip_id])]
+    whole = [clip_id for clip_id in whole if _teaches(records[clip_id])]
     return TrainingSet(
         library_version=version,
         clips=tuple(records[clip_id] for clip_id in whole),
@@ -126,6 +127,12 @@ def read_training_set(store: Store, filter: ClipFilter = READY) -> TrainingSet:
         wide=_stacked([found[WIDE][clip_id] for clip_id in whole]),
         angles=angles,
     )
+
+
+def _teaches(clip: ClipRecord) -> bool:
+    """Whether models learn from a clip: it was recorded, and is no lower or upper body alone."""
+    is_part = any(role.value in clip.missing_roles for role in ESSENTIAL_ROLES)
+    return not is_part and not is_synthesized(clip)
 
 
 def recording_of_clip(clip: ClipRecord) -> str:

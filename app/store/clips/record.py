@@ -69,15 +69,17 @@ class ClipLabels:
 class AnalysisHints:
     """Facts about a motion file that a client states; they override those in the file.
 
-    frame_rate: Hz; metres_per_unit: of the coordinates in the file; roles: joint name by role;
-    stack: name of the animation stack in an FBX file; audio_offset: time of the motion at which
-    the recording begins, seconds; tempo: beats per minute; beats: seconds. The column of a hint in
-    the table `clips` is its name with `_override` added.
+    frame_rate: Hz; metres_per_unit: of the coordinates in the file; up_axis: "y", "-z", ...;
+    roles: joint name by role, or two names for the middle of both; stack: name of the animation
+    stack in an FBX file; audio_offset: time of the motion at which the recording begins, seconds;
+    tempo: beats per minute; beats: seconds. The column of a hint in the table `clips` is its name
+    with `_override` added.
     """
 
     frame_rate: float | None = None
     metres_per_unit: float | None = None
-    roles: dict[str, str] | None = None
+    up_axis: str | None = None
+    roles: dict[str, str | list[str]] | None = None
     stack: str | None = None
     audio_offset: float | None = None
     tempo: float | None = None

@@ -103,6 +103,7 @@ clips = Table(
     Column("source", String),
     Column("frame_rate_override", Float),
     Column("metres_per_unit_override", Float),
+    Column("up_axis_override", String),
     _json("roles_override"),
     Column("stack_override", String),
     Column("audio_offset_override", Float),

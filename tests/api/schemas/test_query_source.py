@@ -16,12 +16,13 @@ from app.services.find.query_source import UPLOAD_ONLY, QuerySource
 SENT = {
     "unit": "cm",
     "frame_rate": "30",
+    "up_axis": "-y",
     "roles": '{"hips": "Pelvis"}',
     "stack": "run",
     "start": "0.5",
     "end": "1.5",
 }
-HINTS = QuerySource(unit="cm", frame_rate=30.0, roles={"hips": "Pelvis"}, stack="run")
+HINTS = QuerySource(unit="cm", frame_rate=30.0, up_axis="-y", roles={"hips": "Pelvis"}, stack="run")
 
 
 def test_a_form_fills_every_field_of_a_source() -> None:

@@ -96,6 +96,32 @@ def test_position_channels_replace_the_offset_axis_by_axis() -> None:
     assert np.allclose(recording.translations[:, 1], [[7, 3, -7], [7, -4, -7]])
 
 
+SIX_CHANNELS = HIERARCHY.replace("CHANNELS 3", "CHANNELS 6 Xposition Yposition Zposition")
+
+
+def six_channels(*moves: str) -> bytes:
+    """The simple file with position channels on its second joint. moves: three numbers a frame."""
+    rows = [
+        " ".join((*row.split()[:6], move, *row.split()[6:]))
+        for row, move in zip(ROWS, moves, strict=True)
+    ]
+    return bvh(SIX_CHANNELS, rows)
+
+
+def test_position_channels_that_are_always_zero_do_not_replace_the_offset() -> None:
+    recording = read_bvh(six_channels("0 0 0", "0 0 0"))
+    assert np.allclose(recording.positions, read_bvh(bvh()).positions, atol=1e-5)
+    assert [caution.code for caution in recording.cautions] == ["position_channels_unused"]
+    assert "Spine" in recording.cautions[0].detail
+    assert recording.translations is None
+
+
+def test_position_channels_that_move_once_replace_the_offset_always() -> None:
+    recording = read_bvh(six_channels("0 0 0", "0 0 1"))
+    assert recording.cautions == ()
+    assert np.allclose(recording.positions[0, 1], recording.positions[0, 0])
+
+
 def test_each_joint_turns_in_the_order_of_its_channels() -> None:
     hierarchy = HIERARCHY.replace(
         "Xposition Yposition Zposition Zrotation Xrotation Yrotation",

@@ -75,7 +75,7 @@ def test_a_lying_person_stays_lying() -> None:
     trans = np.tile([0.0, 0.0, 0.2], (60, 1))
     motion = canonicalize(read_npz(npz(poses=lying, trans=trans, mocap_framerate=60)))
     assert np.ptp(motion.positions[0, :, 1]) < 0.3
-    assert [c.code for c in motion.cautions] == ["body_model_missing"]
+    assert [c.code for c in motion.cautions] == ["body_model_missing", "up_axis_suspect"]
 
 
 def test_y_up_parameters_are_upright() -> None:

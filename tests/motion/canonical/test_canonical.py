@@ -97,10 +97,18 @@ def test_a_body_without_arms_is_accepted_with_a_caution() -> None:
     assert motion.role_positions().shape == (40, 13, 3)
 
 
-def test_a_body_without_legs_is_refused() -> None:
-    legless = without(person(CONVENTIONS["MotionBuilder"]), "leg", "knee", "foot", "toes")
-    with pytest.raises(NotHuman, match="left_knee, right_knee"):
-        canonicalize(legless)
+@pytest.mark.parametrize(
+    ("parts", "missing"),
+    [
+        (("leg", "knee", "foot", "toes", "elbow", "hand"), "left_knee, right_knee"),
+        (("neck", "head", "chest", "shoulder", "elbow", "hand", "foot", "toes"), "neck"),
+        (("left_knee", "left_foot", "left_toes"), "left_knee"),
+    ],
+)
+def test_a_body_with_less_than_a_half_is_refused(parts: tuple[str, ...], missing: str) -> None:
+    less = without(person(CONVENTIONS["MotionBuilder"]), *parts)
+    with pytest.raises(NotHuman, match=missing):
+        canonicalize(less)
 
 
 NAMES = sorted({name for names in CONVENTIONS.values() for name in names.values()})

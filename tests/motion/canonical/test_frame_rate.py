@@ -51,6 +51,35 @@ def test_nine_steps_a_second_give_a_caution() -> None:
     assert caution.likely < 120
 
 
+@pytest.mark.parametrize("true", [24.0, 30.0, 60.0])
+@pytest.mark.parametrize("said", [1.0, 1.5])
+def test_steps_of_many_seconds_give_a_caution(true: float, said: float) -> None:
+    """A frame time of 1 is often a frame number."""
+    (caution,) = judge_frame_rate(walking(6, rate=true), said)
+    assert "a step takes" in caution.detail
+    assert caution.likely == pytest.approx(true, rel=0.35)
+
+
+@pytest.mark.parametrize("pace", [0.1, 0.5, 1.0])
+def test_slow_and_usual_steps_give_none(pace: float) -> None:
+    body = walking(8 / pace, rate=30, steps_hz=pace, speed=0.6 * pace)
+    assert judge_frame_rate(body, 30) == []
+
+
+def test_laws_that_need_meters_are_left_out_if_the_unit_is_a_guess() -> None:
+    assert judge_frame_rate(2.2 * jumping(60), 60) != []
+    assert judge_frame_rate(2.2 * jumping(60), 60, is_unit_sure=False) == []
+
+
+def test_a_dance_of_hops_needs_no_grip() -> None:
+    """Near flights the load of the feet is small, so that its share to the side seems large."""
+    body = standing(600).copy()
+    t = np.arange(600) / 60
+    body[..., 1] += 0.05 * np.sin(2 * np.pi * 2.2 * t)[:, None]  # 1 g up and down
+    body[..., 0] += 0.02 * np.sin(2 * np.pi * 2.2 * t)[:, None]  # .4 g to the sides
+    assert judge_frame_rate(body, 60) == []
+
+
 @pytest.mark.parametrize("frames", [1, 2, 5, 30])
 def test_short_clips_are_not_checked_by_all_laws(frames: int) -> None:
     assert judge_frame_rate(standing(frames), 30) == []

@@ -50,3 +50,22 @@ def test_an_implausible_unit_of_the_file_gives_a_caution(declared: float) -> Non
     unit = confirm_unit(declared, recording.positions, EXPECTED)
     assert unit.metres_per_unit == 0.01
     assert [caution.code for caution in unit.cautions] == ["unit_suspect"]
+
+
+@pytest.mark.parametrize(("size", "said"), [(0.6, "1.0"), (0.5, "0.8")])
+def test_a_child_in_centimeters_is_no_giant_in_inches(size: float, said: str) -> None:
+    recording = person(scale=100 * size)
+    unit = judge_unit(recording.positions, EXPECTED)
+    assert unit.metres_per_unit == 0.01
+    (caution,) = unit.cautions
+    assert caution.code == "unit_guessed"
+    assert f"in cm the person would be {said}" in caution.detail
+    assert "in in" in caution.detail
+
+
+@pytest.mark.parametrize(("scale", "power"), [(0.1, 10.0), (1e4, 1e-4), (1e5, 1e-5)])
+def test_a_power_of_ten_goes_before_the_typical_stature(scale: float, power: float) -> None:
+    recording = person(scale=scale * 1.1)
+    unit = judge_unit(recording.positions, EXPECTED)
+    assert unit.metres_per_unit == power
+    assert [caution.code for caution in unit.cautions] == ["unit_guessed"]

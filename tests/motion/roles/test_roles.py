@@ -100,7 +100,8 @@ def test_a_body_without_size_has_no_roles_by_shape() -> None:
 def test_the_mapping_of_the_client_is_used() -> None:
     recording = person(CONVENTIONS["DAZ"])
     names = recording.skeleton.names
-    given = given_roles(names, {"left_hand": "lForeArm", "hips": "chest"})
+    said = given_roles(names, {"left_hand": "lForeArm", "hips": "chest"})
+    given = {role: joint for role, (joint,) in said.items()}
     found = find_roles(names, recording.skeleton.parents, recording.positions, given)
     assert found[R.LEFT_HAND] == names.index("lForeArm")
     assert found[R.HIPS] == names.index("chest")

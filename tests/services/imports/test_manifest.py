@@ -16,10 +16,10 @@ from app.store.clips.record import AnalysisHints, ClipLabels
 FEW_ROWS = ManifestLimits(rows=5)
 
 TABLE = (
-    "\ufeffpath, Person,task,words,license,source,fps,unit,remark\r\n"
-    'a.bvh,ada,walk,"Walk slow left_leg",CC0,me,60,cm,"x, y"\r\n'
+    "\ufeffpath, Person,task,words,license,source,fps,unit,Up_Axis,remark\r\n"
+    'a.bvh,ada,walk,"Walk slow left_leg",CC0,me,60,cm,-Z,"x, y"\r\n'
     "\r\n"
-    "deep\\b.bvh,,,,,,,,\r\n"
+    "deep\\b.bvh,,,,,,,,,\r\n"
 )
 
 
@@ -34,7 +34,7 @@ def test_a_row_has_the_values_of_all_columns() -> None:
     row = manifest.row("set/a.bvh")
     words = ("walk", "slow", "left_leg")
     assert row.labels == ClipLabels("a", "ada", "walk", words, "CC0", "me")
-    assert row.hints == AnalysisHints(frame_rate=60.0, metres_per_unit=0.01)
+    assert row.hints == AnalysisHints(frame_rate=60.0, metres_per_unit=0.01, up_axis="-z")
     assert row.problem is None
     empty = manifest.row("set/deep/b.bvh")
     assert (empty.labels, empty.hints) == (ClipLabels("b"), AnalysisHints())

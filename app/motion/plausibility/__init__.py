@@ -1,0 +1,1 @@
+"""What cannot be a human body, or is doubtful in one."""

@@ -1,0 +1,91 @@
+"""Whether left and right of a body agree with the directions of chest, hips, knees and toes.
+
+Left is the cross product of up (along the trunk) and forward. Knees bend forward and toes point
+forward, also when somebody walks backward.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from app.motion.motion import Motion
+from app.motion.roles.joint_roles import JointRole
+from app.motion.skeleton.recording import Caution
+from app.numerics.arrays import FloatArray, IntArray
+
+MAX_OPPOSITE = -0.3
+"""The largest mean cosine between two directions that count as opposite."""
+MIN_LENGTH = 1e-9
+"""Meters: a shorter line has no direction."""
+
+_R = JointRole
+_Points = Mapping[JointRole, FloatArray]
+
+
+def side_doubts(motion: Motion, frames: IntArray) -> Iterator[Caution]:
+    """A caution if chest and hips, or the named sides and the feet, are opposite.
+
+    frames: (n,) the frames in which the sides are measured.
+    """
+    positions = motion.positions[frames].astype(np.float64)
+    sampled = {role: positions[:, joint] for role, joint in motion.roles.items()}
+    if _R.NECK not in sampled:
+        return
+    up = _unit(sampled[_R.NECK] - sampled[_R.HIPS])
+    lines = {part: _left_line(part, sampled, up) for part in ("shoulder", "upper_leg", "knee")}
+    chest = lines["shoulder"]
+    hips = lines["upper_leg"] if lines["upper_leg"] is not None else lines["knee"]
+    if hips is None:
+        return
+    if chest is not None and float(np.mean(np.sum(chest * hips, axis=1))) < MAX_OPPOSITE:
+        names = [motion.names[motion.roles[r]] for r in (_R.LEFT_SHOULDER, _R.RIGHT_SHOULDER)]
+        detail = (
+            f"chest and hips face opposite ways; {names[0]} and {names[1]}, or the legs, may be"
+            " exchanged"
+        )
+        yield Caution("sides_suspect", detail)
+    elif _forward_share(sampled, np.cross(hips, up)) < MAX_OPPOSITE:
+        detail = "the knees and feet point backward; left and right may be exchanged"
+        yield Caution("sides_suspect", detail)
+
+
+def _left_line(part: str, sampled: _Points, up: FloatArray) -> FloatArray | None:
+    """(frames, 3) the unit vectors to the left at right angles to `up` (frames, 3)."""
+    left, right = (_R(f"{side}_{part}") for side in ("left", "right"))
+    if left not in sampled or right not in sampled:
+        return None
+    line = sampled[left] - sampled[right]
+    return _unit(line - np.sum(line * up, axis=1, keepdims=True) * up)
+
+
+def _forward_share(sampled: _Points, forward: FloatArray) -> float:
+    """The mean cosine of `forward` (frames, 3) and the directions of knees and toes.
+
+    Each direction has its length as its weight: a straight leg shows nothing.
+    """
+    directions = [
+        direction for side in ("left", "right") for direction in _directions(side, sampled)
+    ]
+    along = sum(float(np.sum(direction * forward)) for direction in directions)
+    possible = sum(float(np.linalg.norm(direction, axis=1).sum()) for direction in directions)
+    return along / max(possible, MIN_LENGTH)
+
+
+def _directions(side: str, sampled: _Points) -> Iterator[FloatArray]:
+    """(frames, 3) from the leg to the knee, and from the ankle to the toes."""
+    knee, foot, toes = (_R(f"{side}_{part}") for part in ("knee", "foot", "toes"))
+    if knee not in sampled or foot not in sampled:
+        return
+    hip = sampled.get(_R(f"{side}_upper_leg"), sampled[_R.HIPS])
+    leg, thigh = sampled[foot] - hip, sampled[knee] - hip
+    squared = np.maximum(np.sum(leg * leg, axis=1, keepdims=True), MIN_LENGTH)
+    yield thigh - np.sum(thigh * leg, axis=1, keepdims=True) / squared * leg
+    if toes in sampled:
+        yield sampled[toes] - sampled[foot]
+
+
+def _unit(vectors: FloatArray) -> FloatArray:
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.asarray(vectors / np.maximum(lengths, MIN_LENGTH))
