@@ -11,6 +11,8 @@ from app.formats.c3d.reader import read_c3d
 from app.formats.fbx.reader import read_fbx
 from app.formats.npz.reader import read_npy_positions, read_npz
 from app.formats.sniff import archive_names, sniff
+from app.formats.tables.reader import read_csv, read_tsv
+from app.formats.trc.reader import read_trc
 from app.motion.skeleton.recording import Recording
 
 
@@ -24,9 +26,12 @@ READERS: dict[str, Callable[[bytes], Recording]] = {
     "asf": read_lone_asf,
     "bvh": read_bvh,
     "c3d": read_c3d,
+    "csv": read_csv,
     "fbx": read_fbx,
     "npy": read_npy_positions,
     "npz": read_npz,
+    "trc": read_trc,
+    "tsv": read_tsv,
 }
 """The reader of each format, by the name that `sniff` returns."""
 

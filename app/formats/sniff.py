@@ -35,6 +35,16 @@ _KEYWORDS = (
     ),
     (re.compile(rb"\s*root(\s+[-+.\deE]+){1,6}\s*$"), "amc"),
     (re.compile(rb"\s*; FBX \d", re.IGNORECASE), "fbx"),
+    (re.compile(rb"\s*\"?Format Version\"?,", re.IGNORECASE), "csv"),
+    (
+        re.compile(
+            rb"\s*\"?(Trajectories|Devices|Joints|Model Outputs|Segments)\"?[,;\t \"]*$",
+            re.IGNORECASE,
+        ),
+        "csv",
+    ),
+    (re.compile(rb"\s*NO_OF_FRAMES\t"), "tsv"),
+    (re.compile(rb"\s*\"?PathFileType\b", re.IGNORECASE), "trc"),
 )
 _C3D_KEY = 0x50
 _ZIP_MAGICS = (b"PK\x03\x04", b"PK\x05\x06")

@@ -1,4 +1,4 @@
-"""Selects the markers of a C3D file that are used.
+"""Selects the markers of a file that are used.
 
 These are the labeled markers of one subject, each label once, in the frames in which they are seen.
 """
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.errors import Place, Unreadable
-from app.formats.c3d.points import Points
+from app.formats.markers.tracks import Tracks
 from app.motion.roles.marker_names import is_marker, markers_by_place, subject_and_label
 from app.motion.skeleton.occlusion import Gap
 from app.motion.skeleton.recording import Caution
@@ -37,24 +37,23 @@ class Markers:
     cautions: tuple[Caution, ...] = ()
 
 
-def labeled_markers(points: Points) -> Markers:
+def labeled_markers(points: Tracks) -> Markers:
     """The markers of one subject that are seen, each label once.
 
     Frames at the start and at the end in which no marker is seen are left out. Raises Unreadable if
     no labeled marker is ever seen.
     """
     split = [subject_and_label(label) for label in points.labels]
-    outputs = _model_outputs(points)
     named = [
         index
         for index, (_, label) in enumerate(split)
-        if is_marker(label) and points.labels[index] not in outputs
+        if is_marker(label) and points.labels[index] not in points.outputs
     ]
     seen = np.isfinite(points.positions[..., 0])
     named = [index for index in named if seen[:, index].any()]
     if not named:
         message = "expected labeled markers, found none that is seen"
-        raise Unreadable(message, places=[Place("POINT:LABELS", message)])
+        raise Unreadable(message, places=[Place("labels", message)])
     subject, cautions = _main_subject([split[index] for index in named])
     mine = [index for index in named if split[index][0] == subject]
     points_read, more_cautions = _each_once([(split[index][1], index) for index in mine], seen)
@@ -70,13 +69,6 @@ def labeled_markers(points: Points) -> Markers:
         points.first_frame + first,
         cautions + more_cautions,
     )
-
-
-def _model_outputs(points: Points) -> set[str]:
-    """Labels of results of gait models, which the file lists as angles, forces and others."""
-    groups = ("ANGLES", "FORCES", "MOMENTS", "POWERS", "SCALARS", "REACTIONS")
-    found = (points.parameters.get(f"POINT:{group}") for group in groups)
-    return {label for group in found if group is not None for label in group.texts}
 
 
 def _main_subject(names: Sequence[tuple[str, str]]) -> tuple[str, tuple[Caution, ...]]:

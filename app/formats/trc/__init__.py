@@ -1,0 +1,1 @@
+"""TRC: the marker file of OpenSim."""
