@@ -9,6 +9,7 @@ from app.formats.acclaim.amc import read_amc
 from app.formats.bvh.reader import read_bvh
 from app.formats.c3d.reader import read_c3d
 from app.formats.fbx.reader import read_fbx
+from app.formats.gltf.reader import read_gltf
 from app.formats.npz.reader import read_npy_positions, read_npz
 from app.formats.sniff import archive_names, sniff
 from app.formats.tables.reader import read_csv, read_tsv
@@ -28,6 +29,8 @@ READERS: dict[str, Callable[[bytes], Recording]] = {
     "c3d": read_c3d,
     "csv": read_csv,
     "fbx": read_fbx,
+    "glb": read_gltf,
+    "gltf": read_gltf,
     "npy": read_npy_positions,
     "npz": read_npz,
     "trc": read_trc,
@@ -36,13 +39,21 @@ READERS: dict[str, Callable[[bytes], Recording]] = {
 """The reader of each format, by the name that `sniff` returns."""
 
 
+WITH_STACKS: dict[str, Callable[[bytes, str | None], Recording]] = {
+    "fbx": read_fbx,
+    "glb": read_gltf,
+    "gltf": read_gltf,
+}
+"""The readers of the formats whose files may have several animations."""
+
+
 def read_recording(
     content: bytes, skeleton: bytes | None = None, stack: str | None = None
 ) -> Recording:
     """Read a motion file. Its first bytes decide its format.
 
-    skeleton: the ASF file that an AMC file needs. stack: the name of the animation stack of an FBX
-    file; by default the longest one. Raises EmptyFile, UnknownFormat, FormatNotSupported (for
+    skeleton: the ASF file that an AMC file needs. stack: the name of an animation of an FBX or
+    glTF file; by default the longest one. Raises EmptyFile, UnknownFormat, FormatNotSupported (for
     example, for a ZIP archive without a clip), SkeletonNeeded, MotionNeeded, SkeletonNotNeeded,
     BadField for a stack that does not exist, Unreadable with places, and TooLarge.
     """
@@ -54,8 +65,8 @@ def read_recording(
         check_stack_belongs(name)
     if name == "amc":
         return read_amc(content, skeleton)
-    if name == "fbx":
-        return read_fbx(content, stack)
+    if name in WITH_STACKS:
+        return WITH_STACKS[name](content, stack)
     reader = READERS.get(name)
     if reader is None:
         raise _no_clip(content)
@@ -74,6 +85,6 @@ def _no_clip(archive: bytes) -> FormatNotSupported:
 
 def check_stack_belongs(format: str) -> None:
     """Raise BadField if files of this format do not have animation stacks."""
-    if format != "fbx":
-        message = f"goes with an FBX file, not with {format.upper()}"
+    if format not in WITH_STACKS:
+        message = f"goes with an FBX or glTF file, not with {format.upper()}"
         raise BadField(f"stack: {message}", places=[Place("stack", message)])

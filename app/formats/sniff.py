@@ -22,6 +22,7 @@ HEAD_LINES = 50
 _MAGICS = (
     (b"Kaydara FBX Binary", "fbx"),
     (b"\x93NUMPY", "npy"),
+    (b"glTF", "glb"),
 )
 _KEYWORDS = (
     (re.compile(rb"\s*HIERARCHY\b", re.IGNORECASE), "bvh"),
@@ -46,6 +47,11 @@ _KEYWORDS = (
     (re.compile(rb"\s*NO_OF_FRAMES\t"), "tsv"),
     (re.compile(rb"\s*\"?PathFileType\b", re.IGNORECASE), "trc"),
 )
+_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+_JSON_START = re.compile(rb"[\[{]\s*([\[{\]}\"\d.-]|$)")
+_GLTF_NAMES = (b'"asset"', b'"accessors"', b'"bufferViews"', b'"scenes"', b'"nodes"')
+MIN_GLTF_NAMES = 2
+"""The fewest parts of a glTF file that must be named near its ends."""
 _C3D_KEY = 0x50
 _ZIP_MAGICS = (b"PK\x03\x04", b"PK\x05\x06")
 _ZIP_ENTRY = b"PK\x01\x02"
@@ -59,7 +65,7 @@ def sniff(content: bytes) -> str:
     """
     if not content or (len(content) <= HEAD_BYTES and not content.strip()):
         raise EmptyFile
-    return _binary(content) or _text(content[:HEAD_BYTES]) or _unknown(content)
+    return _binary(content) or _json(content) or _text(content[:HEAD_BYTES]) or _unknown(content)
 
 
 def _binary(content: bytes) -> str | None:
@@ -72,6 +78,15 @@ def _binary(content: bytes) -> str | None:
     if len(content) >= 512 and content[1] == _C3D_KEY and content[0] in range(1, 100):
         return "c3d"
     return None
+
+
+def _json(content: bytes) -> str | None:
+    """The format of an object in JSON: glTF files name their parts near one of their ends."""
+    head = content[:HEAD_BYTES].removeprefix(_BYTE_ORDER_MARK).lstrip()
+    if not head.startswith((b"{", b"[")) or not _JSON_START.match(head):
+        return None
+    ends = head + content[-TAIL_BYTES:]
+    return "gltf" if sum(name in ends for name in _GLTF_NAMES) >= MIN_GLTF_NAMES else "json"
 
 
 def is_zip(head: bytes) -> bool:
@@ -111,7 +126,7 @@ def _first_entry(content: bytes) -> str:
 
 
 def _text(head: bytes) -> str | None:
-    head = head.removeprefix(b"\xef\xbb\xbf")
+    head = head.removeprefix(_BYTE_ORDER_MARK)
     for line in head.splitlines()[:HEAD_LINES]:
         for keyword, name in _KEYWORDS:
             if keyword.match(line):

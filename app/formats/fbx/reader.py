@@ -16,8 +16,9 @@ import numpy as np
 
 from app.formats.common.failures import too_large, unreadable_at
 from app.formats.common.numbers import MAX_MAGNITUDE
+from app.formats.common.stacks import choose_stack, stack_caution
 from app.formats.common.world_positions import MAX_JOINT_FRAMES, Solved, solve
-from app.formats.fbx.animation import Stack, choose_stack, find_stacks, listed
+from app.formats.fbx.animation import Stack, find_stacks
 from app.formats.fbx.records import FbxFile
 from app.formats.fbx.scene import FbxScene, Numbers
 from app.formats.fbx.skeleton import Body, find_body
@@ -61,30 +62,19 @@ def read_fbx(content: bytes, stack: str | None = None) -> Recording:
     # A stack without keys that move the body has no span and counts as the shortest.
     spans = [_span(scene, one, found) for one, found in zip(stacks, times, strict=True)]
     lengths = [span[1] - span[0] if span else -1.0 for span in spans]
-    chosen = choose_stack(stacks, lengths, stack)
+    names = [one.stack.name for one in stacks]
+    chosen = choose_stack(names, lengths, stack)
     span = spans[chosen]
     if span is None:
         raise stacks[chosen].stack.unreadable("expected keys that move joints, found none")
     timing = find_timing(times[chosen], span, scene.settings)
-    cautions = body.cautions + timing.cautions + _stack_caution(stacks, lengths, chosen)
+    cautions = body.cautions + timing.cautions + stack_caution(names, lengths, chosen)
     return _recording(scene, body, stacks[chosen], timing, cautions)
 
 
 def _span(scene: FbxScene, stack: Stack, times: list[IntArray]) -> tuple[float, float] | None:
     start, stop = (scene.ticks(stack.stack, name) for name in ("LocalStart", "LocalStop"))
     return key_span(times, start, stop)
-
-
-def _stack_caution(stacks: list[Stack], lengths: list[float], chosen: int) -> tuple[Caution, ...]:
-    names = [one.stack.name for one, length in zip(stacks, lengths, strict=True) if length >= 0]
-    if len(names) < 2:
-        return ()
-    read = stacks[chosen].stack.name
-    detail = (
-        f"the file has {len(names)} animations ({listed(names)}); {read} was read,"
-        " send `stack` to choose another"
-    )
-    return (Caution("stack_chosen", detail),)
 
 
 @dataclass(frozen=True, slots=True)
