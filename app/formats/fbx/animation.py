@@ -13,7 +13,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from app.formats.fbx.curves import read_keys, read_times, sample
-from app.formats.fbx.scene import FbxObject, FbxScene, unsupported_at
+from app.formats.fbx.objects import FbxObject, unsupported_at
+from app.formats.fbx.scene import FbxScene
 from app.formats.fbx.transforms import ANIMATED_PROPERTIES, FIXED_PROPERTIES
 from app.numerics.arrays import FloatArray, IntArray
 

@@ -1,4 +1,4 @@
-"""Reads binary FBX 7 files: skeletons of limb nodes and their animation. Bytes in, Recording out.
+"""Reads FBX 6 and 7, binary and text: limb nodes and their animation. Bytes in, Recording out.
 
 At rest, the frames of all joints have the axes of the world, as in BVH. The rest pose is the pose
 by pre-rotations alone. Without pre-rotations it is the pose in which the nodes were saved. The
@@ -19,8 +19,9 @@ from app.formats.common.numbers import MAX_MAGNITUDE
 from app.formats.common.stacks import choose_stack, stack_caution
 from app.formats.common.world_positions import MAX_JOINT_FRAMES, Solved, solve
 from app.formats.fbx.animation import Stack, find_stacks
-from app.formats.fbx.records import FbxFile
-from app.formats.fbx.scene import FbxScene, Numbers
+from app.formats.fbx.objects import Numbers
+from app.formats.fbx.opening import open_fbx
+from app.formats.fbx.scene import FbxScene
 from app.formats.fbx.skeleton import Body, find_body
 from app.formats.fbx.timing import Timing, find_timing, key_span
 from app.formats.fbx.transforms import (
@@ -47,13 +48,13 @@ _CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
 
 
 def read_fbx(content: bytes, stack: str | None = None) -> Recording:
-    """Read a binary FBX file.
+    """Read an FBX file.
 
     stack: the name of the animation stack; by default the longest one is read. Raises
-    FormatNotSupported for text, encryption, other versions and unsupported properties, Unreadable
-    with the node or byte, BadField for a stack that does not exist, and TooLarge.
+    FormatNotSupported for encryption, other versions and unsupported properties, Unreadable with
+    the node or byte, BadField for a stack that does not exist, and TooLarge.
     """
-    scene = FbxScene(FbxFile(content))
+    scene = FbxScene(open_fbx(content))
     stacks = find_stacks(scene)
     if not stacks:
         raise unreadable_at("node Objects/AnimationStack", "expected an animation, found none")
