@@ -10,6 +10,8 @@ from app.formats.bvh.reader import read_bvh
 from app.formats.c3d.reader import read_c3d
 from app.formats.fbx.reader import read_fbx
 from app.formats.gltf.reader import read_gltf
+from app.formats.keypoints.reader import read_keypoints
+from app.formats.mvnx.reader import read_mvnx
 from app.formats.npz.reader import read_npy_positions, read_npz
 from app.formats.sniff import archive_names, sniff
 from app.formats.tables.reader import read_csv, read_tsv
@@ -31,6 +33,8 @@ READERS: dict[str, Callable[[bytes], Recording]] = {
     "fbx": read_fbx,
     "glb": read_gltf,
     "gltf": read_gltf,
+    "json": read_keypoints,
+    "mvnx": read_mvnx,
     "npy": read_npy_positions,
     "npz": read_npz,
     "trc": read_trc,

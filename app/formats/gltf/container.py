@@ -9,23 +9,19 @@ from __future__ import annotations
 
 import base64
 import binascii
-import json
 import struct
 from dataclasses import dataclass, field
 from typing import Any
 
 from app.errors import FormatNotSupported, Place
-from app.formats.common.failures import too_large, unreadable_at, unreadable_byte
+from app.formats.common.failures import unreadable_at, unreadable_byte
+from app.formats.common.json_text import parse_json
 from app.formats.common.numbers import excerpt
 
 MAGIC = b"glTF"
-MAX_JSON_BYTES = 64_000_000
-"""The longest JSON object that is parsed. It needs about ten times as much memory. Base64 buffers
-of 40 MB fit; larger files are GLB."""
 _HEADER = struct.Struct("<4sII")
 _CHUNK = struct.Struct("<I4s")
 _BASE64 = ";base64,"
-_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
 Json = dict[str, Any]
 
@@ -76,7 +72,7 @@ class Container:
 def open_gltf(content: bytes) -> Container:
     """Open a GLB file, or a glTF file in JSON. Raises Unreadable, FormatNotSupported, TooLarge."""
     if not content.startswith(MAGIC):
-        return Container(_parsed(content.removeprefix(_BYTE_ORDER_MARK)), b"")
+        return Container(_parsed(content), b"")
     if len(content) < _HEADER.size + _CHUNK.size:
         raise unreadable_byte(len(content), "expected the header of a GLB file, found the end")
     version = _HEADER.unpack_from(content)[1]
@@ -102,13 +98,7 @@ def _binary(content: bytes, at: int) -> bytes:
 
 
 def _parsed(text: bytes) -> Json:
-    if len(text) > MAX_JSON_BYTES:
-        raise too_large("JSON", f"expected at most {MAX_JSON_BYTES} bytes")
-    try:
-        document = json.loads(text)
-    # A deep nesting ends the recursion of the parser.
-    except (ValueError, RecursionError) as error:
-        raise unreadable_at("JSON", f"expected an object in JSON ({error!s:.80})") from None
+    document = parse_json(text)
     if not isinstance(document, dict):
         raise unreadable_at("JSON", "expected an object")
     return document

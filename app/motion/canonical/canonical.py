@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from app.errors import BadField, NotHuman, Place, Unreadable
+from app.errors import BadField, Place, Unreadable
 from app.motion.canonical.extent import check_extent
 from app.motion.canonical.frame_rate import judge_frame_rate
 from app.motion.canonical.units import SCALES, Unit, confirm_unit, judge_unit
@@ -16,6 +16,7 @@ from app.motion.canonical.up_axis import judge_up_axis, to_y_up
 from app.motion.motion import Motion
 from app.motion.roles.bodies import roles_of_one_body
 from app.motion.roles.joint_roles import ESSENTIAL_ROLES, SUN_ROLES, JointRole
+from app.motion.roles.missing_joints import no_joints_for
 from app.motion.roles.roles import given_roles
 from app.motion.skeleton.kinematics import rest_positions
 from app.motion.skeleton.recording import FRAME_RATES, Caution, Recording
@@ -39,7 +40,7 @@ def canonicalize(
     rate = _active_rate(recording, frame_rate)
     given = given_roles(names, {str(role): name for role, name in (roles or {}).items()})
     found, others = roles_of_one_body(names, parents, recording.positions, given)
-    missing = _missing_roles(found)
+    missing = _missing_roles(found, names)
     up_axis = judge_up_axis(
         recording.positions, rest_positions(recording.skeleton), found, recording.up_axis
     )
@@ -96,14 +97,11 @@ def _within(field: str, value: float, limits: tuple[float, float], unit: str) ->
     return float(value)
 
 
-def _missing_roles(found: Mapping[JointRole, int]) -> tuple[JointRole, ...]:
+def _missing_roles(found: Mapping[JointRole, int], names: Sequence[str]) -> tuple[JointRole, ...]:
     """The roles of SUN_ROLES that were not found. Raises NotHuman if one of them is essential."""
     essential = [role for role in ESSENTIAL_ROLES if role not in found]
     if essential:
-        raise NotHuman(
-            f"The skeleton has no joint for: {', '.join(essential)}",
-            places=[Place(f"roles.{role}", "expected a joint, found none") for role in essential],
-        )
+        raise no_joints_for(essential, names)
     return tuple(role for role in SUN_ROLES if role not in found)
 
 

@@ -43,7 +43,7 @@ from app.store.clips.record import ClipRecord
 
 _Kind = TypeVar("_Kind", bound=StrEnum)
 
-POSITION_FORMATS = frozenset({"c3d", "npy"})
+POSITION_FORMATS = frozenset({"c3d", "csv", "json", "npy", "trc", "tsv"})
 """File formats without rotations; such files need not be read again."""
 
 
