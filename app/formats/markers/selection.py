@@ -12,12 +12,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.errors import Place, Unreadable
+from app.formats.common.names import without_common_prefix
 from app.formats.markers.tracks import Tracks
 from app.motion.roles.marker_names import is_marker, markers_by_place, subject_and_label
 from app.motion.skeleton.occlusion import Gap
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import BoolArray, FloatArray
 
+MIN_PREFIXED = 8
+"""The fewest labels whose common beginning counts as the name of a subject."""
 MAX_MARKERS_SHOWN = 8
 """The most markers that a caution or an error names."""
 
@@ -43,7 +46,7 @@ def labeled_markers(points: Tracks) -> Markers:
     Frames at the start and at the end in which no marker is seen are left out. Raises Unreadable if
     no labeled marker is ever seen.
     """
-    split = [subject_and_label(label) for label in points.labels]
+    split = _split(points.labels)
     named = [
         index
         for index, (_, label) in enumerate(split)
@@ -69,6 +72,18 @@ def labeled_markers(points: Tracks) -> Markers:
         points.first_frame + first,
         cautions + more_cautions,
     )
+
+
+def _split(labels: Sequence[str]) -> list[tuple[str, str]]:
+    """The subject and the rest of each label. Qualisys separates them by `_`, others by `:`."""
+    split = [subject_and_label(label) for label in labels]
+    named = [label for subject, label in split if is_marker(label) and not subject]
+    short = dict(zip(named, without_common_prefix(named), strict=True))
+    if len(named) < MIN_PREFIXED or len(markers_by_place(named)) >= len(
+        markers_by_place(list(short.values()))
+    ):
+        return split
+    return [(subject, short.get(label, label)) for subject, label in split]
 
 
 def _main_subject(names: Sequence[tuple[str, str]]) -> tuple[str, tuple[Caution, ...]]:

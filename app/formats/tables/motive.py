@@ -9,10 +9,10 @@ are read if there are enough of them, else the markers. Y is up. Source: OptiTra
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import takewhile
 
 from app.errors import FormatNotSupported, Place
 from app.formats.common.failures import unreadable_line
+from app.formats.common.names import without_common_prefix
 from app.formats.common.units import named_unit
 from app.formats.tables.cells import cells_of
 from app.formats.tables.layout import Column, Layout, number_in, positions_in
@@ -88,7 +88,7 @@ def _bones(columns: Sequence[Column], types: Sequence[str]) -> list[Column]:
     bones = [column for column in columns if types[column.x].lower() == "bone"]
     if len(bones) < MIN_BONES:
         return []
-    labels = _without_prefix([bone.label for bone in bones])
+    labels = without_common_prefix([bone.label for bone in bones])
     return [Column(label, bone.x) for label, bone in zip(labels, bones, strict=True)]
 
 
@@ -110,12 +110,3 @@ def _frames(values: Mapping[str, str]) -> int | None:
     names = ("total exported frames", "total frames in take")
     found = next((number_in(values[name]) for name in names if name in values), None)
     return int(found) if found is not None and abs(found) < 1e9 else None
-
-
-def _without_prefix(labels: Sequence[str]) -> list[str]:
-    """The labels without the name of the skeleton, with which all of them begin."""
-    # What the first and the last label in the alphabet share, all labels share.
-    pairs = zip(min(labels), max(labels), strict=False)
-    prefix = "".join(one for one, _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
-    cut = max(prefix.rfind(mark) for mark in "_: ") + 1
-    return [label[cut:] for label in labels]

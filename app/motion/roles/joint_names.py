@@ -57,8 +57,8 @@ _PREFIX = re.compile(
 _FILLERS = frozenset(("joint", "jnt", "bone", "bn"))
 """Words without meaning that programs add elsewhere in the name of a joint."""
 _SIDES: dict[str, Side] = {
-    "left": "left", "l": "left", "lft": "left",
-    "right": "right", "r": "right", "rgt": "right",
+    "left": "left", "l": "left", "lft": "left", "lt": "left",
+    "right": "right", "r": "right", "rgt": "right", "rt": "right",
 }  # fmt: skip
 _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 
