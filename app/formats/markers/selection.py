@@ -65,6 +65,9 @@ def labeled_markers(points: Tracks) -> Markers:
     if last - first < len(seen):
         start, end = points.first_frame + first, points.first_frame + last - 1
         detail = f"no marker is seen before frame {start} or after frame {end}"
+        if points.frame_rate:
+            seconds = first / points.frame_rate
+            detail += f"; 0 s here is {seconds:.3f} s after the first frame of the file"
         more_cautions += (Caution("frames_trimmed", detail),)
     return Markers(
         tuple(split[index][1] for index in points_read),
