@@ -9,16 +9,15 @@ the nose.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
-from app.formats.markers.selection import Markers, hidden_too_long
-from app.motion.roles.joint_centers import RECIPES, Center, best_recipe, joint_centers
+from app.formats.markers.selection import Markers
+from app.motion.roles.joint_centers import Center, joint_centers
 from app.motion.roles.joint_names import roles_by_name
-from app.motion.roles.joint_roles import SUN_ROLES, JointRole
+from app.motion.roles.joint_roles import JointRole
 from app.motion.roles.marker_names import markers_by_place, place_on_body
-from app.motion.skeleton.occlusion import Gap
 from app.numerics.arrays import FloatArray
 
 Usable = Mapping[int, FloatArray]
@@ -36,12 +35,8 @@ _HEADS = (("LEFTEAR", "RIGHTEAR"), ("LEAR", "REAR"), ("NOSE",))
 """Labels of points whose mean is the head, the best first."""
 
 
-def centers_of(markers: Markers, usable: Usable, gaps: Sequence[Gap]) -> dict[JointRole, Center]:
-    """The joint centers by role.
-
-    gaps: the long gaps, for errors. Raises Unreadable if one of Sun's roles cannot be computed
-    because of long gaps.
-    """
+def centers_of(markers: Markers, usable: Usable) -> dict[JointRole, Center]:
+    """The joint centers by role, from the usable markers."""
     places = markers_by_place(markers.labels)
     tracks = {place: usable[m] for place, m in places.items() if m in usable}
     from_markers = joint_centers(tracks)
@@ -52,7 +47,6 @@ def centers_of(markers: Markers, usable: Usable, gaps: Sequence[Gap]) -> dict[Jo
     centers = {**named, **from_markers, **first}
     _add_middles(centers)
     _add_head(centers, markers, usable)
-    _refuse_hidden(centers, markers, gaps)
     return {role: centers[role] for role in JointRole if role in centers}
 
 
@@ -87,14 +81,3 @@ def _add_head(centers: dict[JointRole, Center], markers: Markers, usable: Usable
 
 def _plain(label: str) -> str:
     return "".join(char for char in label.upper() if char.isalnum())
-
-
-def _refuse_hidden(
-    centers: Mapping[JointRole, Center], markers: Markers, gaps: Sequence[Gap]
-) -> None:
-    places = markers_by_place(markers.labels)
-    for role in SUN_ROLES:
-        recipe = None if role in centers else best_recipe(RECIPES[role], places.__contains__)
-        if recipe is not None:
-            hidden = {places[place] for place in recipe}
-            raise hidden_too_long(markers, [gap for gap in gaps if gap.marker in hidden])

@@ -9,17 +9,25 @@ other subjects, and markers that are seen too rarely. Cautions name the last two
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from app.formats.common.failures import too_large
 from app.formats.common.limits import MAX_JOINTS
 from app.formats.markers.centers import Usable, centers_of
-from app.formats.markers.selection import gap_cautions, labeled_markers
+from app.formats.markers.rigid_gaps import fill_by_neighbors
+from app.formats.markers.selection import (
+    Markers,
+    gap_cautions,
+    labeled_markers,
+    stretch_caution,
+)
+from app.formats.markers.stretches import readable_stretch
 from app.formats.markers.tracks import Tracks
 from app.motion.roles.joint_centers import Center
 from app.motion.roles.joint_roles import JointRole
-from app.motion.skeleton.occlusion import fill_gaps
+from app.motion.skeleton.occlusion import Filled, fill_gaps
 from app.motion.skeleton.recording import Recording
 from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
@@ -49,10 +57,13 @@ def recording_of_markers(tracks: Tracks, format: str) -> Recording:
     markers = labeled_markers(tracks)
     if len(markers.labels) > MAX_JOINTS:
         raise too_large("labels", f"expected at most {MAX_JOINTS} labeled markers")
-    filled = fill_gaps(markers.positions, tracks.frame_rate or RATE_FOR_GAPS)
-    good = np.isfinite(filled.positions).all(axis=(0, 2))
-    usable = {marker: filled.positions[:, marker] for marker in np.flatnonzero(good).tolist()}
-    centers = centers_of(markers, usable, filled.long_gaps)
+    rate = tracks.frame_rate or RATE_FOR_GAPS
+    filled = _filled(markers, rate)
+    stretch = readable_stretch(markers, filled.positions, rate)
+    positions = filled.positions[stretch]
+    good = np.isfinite(positions).all(axis=(0, 2))
+    usable = {marker: positions[:, marker] for marker in np.flatnonzero(good).tolist()}
+    centers = centers_of(markers, usable)
     skeleton, positions = _skeleton(markers.labels, usable, centers)
     return Recording(
         format=format,
@@ -65,8 +76,16 @@ def recording_of_markers(tracks: Tracks, format: str) -> Recording:
         metres_per_unit=tracks.metres_per_unit,
         cautions=tracks.cautions
         + markers.cautions
-        + gap_cautions(markers, filled.frames, filled.long_gaps),
+        + stretch_caution(markers, stretch, rate)
+        + gap_cautions(markers, filled.frames, np.flatnonzero(~good).tolist()),
     )
+
+
+def _filled(markers: Markers, rate: float) -> Filled:
+    """The markers with short gaps filled by splines, and long ones by their neighbors."""
+    filled = fill_gaps(markers.positions, rate)
+    positions, more = fill_by_neighbors(markers.labels, filled.positions, filled.long_gaps, rate)
+    return replace(filled, positions=positions, frames=filled.frames + more)
 
 
 def _skeleton(

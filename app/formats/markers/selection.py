@@ -138,21 +138,35 @@ def hidden_too_long(markers: Markers, gaps: Sequence[Gap]) -> Unreadable:
     return Unreadable(f"Markers are hidden for too long to be filled in: {detail}", places=places)
 
 
-def gap_cautions(markers: Markers, filled: int, gaps: Sequence[Gap]) -> tuple[Caution, ...]:
+def gap_cautions(markers: Markers, filled: int, hidden: Sequence[int]) -> tuple[Caution, ...]:
     """Cautions about gaps that were filled, and about markers that are left out for long gaps.
 
-    filled: the number of filled frames, summed over markers. gaps: the gaps that are too long.
+    filled: the number of filled frames, summed over markers. hidden: the markers that are left out.
     """
     cautions: tuple[Caution, ...] = ()
     if filled:
         share = 100 * filled / (len(markers.labels) * len(markers.positions))
         detail = f"markers hidden for short times were filled in: {share:.1f} % of their frames"
         cautions += (Caution("gaps_filled", detail),)
-    if gaps:
-        names = list(dict.fromkeys(markers.labels[gap.marker] for gap in gaps))
+    if hidden:
+        names = [markers.labels[marker] for marker in hidden]
         detail = f"markers hidden for long times are left out: {_listed(names)}"
         cautions += (Caution("markers_left_out", detail),)
     return cautions
+
+
+def stretch_caution(markers: Markers, stretch: slice, frame_rate: float) -> tuple[Caution, ...]:
+    """A caution if only a part of the frames is read. frame_rate: Hz."""
+    count = len(markers.positions)
+    if stretch.stop - stretch.start == count:
+        return ()
+    first, last = markers.first_frame + stretch.start, markers.first_frame + stretch.stop - 1
+    detail = (
+        f"markers that are needed are hidden for long times, so only frames {first} to {last} of"
+        f" {count} are read; 0 s here is {stretch.start / frame_rate:.3f} s after frame"
+        f" {markers.first_frame}"
+    )
+    return (Caution("frames_trimmed", detail),)
 
 
 def _listed(names: Sequence[str]) -> str:
