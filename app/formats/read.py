@@ -13,6 +13,7 @@ from app.formats.gltf.reader import read_gltf
 from app.formats.keypoints.reader import read_keypoints
 from app.formats.mvnx.reader import read_mvnx
 from app.formats.npz.reader import read_npy_positions, read_npz
+from app.formats.single_pose import with_held_pose
 from app.formats.sniff import archive_names, sniff
 from app.formats.tables.reader import read_csv, read_tsv
 from app.formats.trc.reader import read_trc
@@ -54,13 +55,17 @@ WITH_STACKS: dict[str, Callable[[bytes, str | None], Recording]] = {
 def read_recording(
     content: bytes, skeleton: bytes | None = None, stack: str | None = None
 ) -> Recording:
-    """Read a motion file. Its first bytes decide its format.
+    """Read a motion file. Its first bytes decide its format. A single frame becomes a held pose.
 
     skeleton: the ASF file that an AMC file needs. stack: the name of an animation of an FBX or
     glTF file; by default the longest one. Raises EmptyFile, UnknownFormat, FormatNotSupported (for
     example, for a ZIP archive without a clip), SkeletonNeeded, MotionNeeded, SkeletonNotNeeded,
     BadField for a stack that does not exist, Unreadable with places, and TooLarge.
     """
+    return with_held_pose(_read(content, skeleton, stack))
+
+
+def _read(content: bytes, skeleton: bytes | None, stack: str | None) -> Recording:
     name = sniff(content)
     if skeleton is not None and name not in ("amc", "asf"):
         places = [Place("skeleton", f"expected none with a {name.upper()} file")]

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,6 +19,8 @@ from app.motion.skeleton.occlusion import Gap
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import BoolArray, FloatArray
 
+MIN_SENTINEL = 900.0
+"""The smallest number that stands for a marker that was not seen."""
 MIN_PREFIXED = 8
 """The fewest labels whose common beginning counts as the name of a subject."""
 MAX_MARKERS_SHOWN = 8
@@ -47,6 +49,7 @@ def labeled_markers(points: Tracks) -> Markers:
     no labeled marker is ever seen.
     """
     split = _split(points.labels)
+    points = replace(points, positions=_without_sentinels(points.positions))
     named = [
         index
         for index, (_, label) in enumerate(split)
@@ -75,6 +78,21 @@ def labeled_markers(points: Tracks) -> Markers:
         points.first_frame + first,
         cautions + more_cautions,
     )
+
+
+def _without_sentinels(positions: FloatArray) -> FloatArray:
+    """The positions with NaN where all three coordinates are one large number, such as 9999.99.
+
+    Programs write such numbers for markers that were not seen. No marker is there by chance.
+    """
+    x = positions[..., 0]
+    with np.errstate(invalid="ignore"):
+        same = (x == positions[..., 1]) & (x == positions[..., 2]) & (np.abs(x) >= MIN_SENTINEL)
+    if not same.any():
+        return positions
+    seen = positions.copy()
+    seen[same] = np.nan
+    return seen
 
 
 def _split(labels: Sequence[str]) -> list[tuple[str, str]]:

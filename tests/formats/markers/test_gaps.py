@@ -101,3 +101,12 @@ def test_a_gap_of_a_single_marker_between_distant_ones_is_not_guessed() -> None:
     recording = read_c3d(c3d(wild, LABELS))
     assert [c.code for c in recording.cautions] == ["markers_left_out"]
     assert "LTHI" not in recording.skeleton.names
+
+
+@pytest.mark.parametrize("number", [9999.99, -9999.0, 99999.0])
+def test_numbers_that_stand_for_hidden_markers(number: float) -> None:
+    positions = MARKERS.copy()
+    positions[50:60, LABELS.index("LKNE")] = number
+    recording = read_c3d(c3d(positions, LABELS))
+    assert [c.code for c in recording.cautions] == ["gaps_filled"]
+    assert max(errors(canonicalize(recording)).values()) < 0.01
