@@ -55,6 +55,8 @@ _GLTF_NAMES = (b'"asset"', b'"accessors"', b'"bufferViews"', b'"scenes"', b'"nod
 _KEYPOINTS = re.compile(
     rb'"[^"]{0,40}(keypoint|joint|landmark|people|instance|position|pose|frames)', re.IGNORECASE
 )
+_NESTED = re.compile(rb"\[\s*\[\s*[\[\d-]")
+"""Lists of numbers in a list of frames."""
 MIN_GLTF_NAMES = 2
 """The fewest parts of a glTF file that must be named near its ends."""
 _C3D_KEY = 0x50
@@ -103,7 +105,7 @@ def _json(content: bytes) -> str | None:
     ends = head + content[-TAIL_BYTES:]
     if sum(name in ends for name in _GLTF_NAMES) >= MIN_GLTF_NAMES:
         return "gltf"
-    return "json" if head.startswith(b"[") or _KEYPOINTS.search(ends) else None
+    return "json" if _KEYPOINTS.search(ends) or _NESTED.match(head) else None
 
 
 def is_zip(head: bytes) -> bool:

@@ -17,7 +17,7 @@ import numpy as np
 from app.formats.common.failures import too_large, unreadable_at
 from app.formats.common.numbers import MAX_MAGNITUDE
 from app.formats.common.stacks import choose_stack, stack_caution
-from app.formats.common.world_positions import MAX_JOINT_FRAMES, solve
+from app.formats.common.world_positions import MAX_JOINT_FRAMES, Solved, solve
 from app.formats.gltf.accessors import Accessors
 from app.formats.gltf.container import Container, open_gltf
 from app.formats.gltf.nodes import Body, find_body, still_transform
@@ -50,9 +50,7 @@ def read_gltf(content: bytes, stack: str | None = None) -> Recording:
     accessors = Accessors(container)
     animations = find_animations(container)
     if not animations:
-        raise unreadable_at(
-            "animations", "expected an animation, found none: this is a still model"
-        )
+        raise unreadable_at("animations", "expected an animation, found a model that does not move")
     body = find_body(container, set().union(*(one.nodes() for one in animations)))
     times = [_times(accessors, one, body) for one in animations]
     spans = [span_of(found) for found in times]
@@ -64,18 +62,10 @@ def read_gltf(content: bytes, stack: str | None = None) -> Recording:
         location = animations[chosen].location
         raise unreadable_at(location, "expected keys that move joints, found none")
     seconds, rate = frame_times(times[chosen], span)
-    if len(seconds) * len(body.nodes) > MAX_JOINT_FRAMES:
-        raise too_large("frames", f"expected at most {MAX_JOINT_FRAMES} joints times frames")
-    motion = _Motion(container, accessors, body, animations[chosen], seconds)
-    with np.errstate(all="ignore"):  # the numbers of a broken file may overflow; checked below
-        rest = _Rest(motion, body)
-        solved = solve(rest.skeleton, len(seconds), rest.local_pose, moving=motion.moves_below())
-    for numbers in (solved.positions, solved.rotations):
-        if not np.all(np.abs(numbers) <= MAX_MAGNITUDE):
-            raise unreadable_at("nodes", f"expected positions within ±{MAX_MAGNITUDE:g}")
+    skeleton, solved = _solved(container, accessors, body, animations[chosen], seconds)
     return Recording(
         format="glb",
-        skeleton=rest.skeleton,
+        skeleton=skeleton,
         positions=solved.positions,
         rotations=solved.rotations,
         translations=solved.translations,
@@ -84,6 +74,26 @@ def read_gltf(content: bytes, stack: str | None = None) -> Recording:
         metres_per_unit=1.0,
         cautions=body.cautions + stack_caution(names, lengths, chosen),
     )
+
+
+def _solved(
+    container: Container,
+    accessors: Accessors,
+    body: Body,
+    animation: Animation,
+    seconds: FloatArray,
+) -> tuple[Skeleton, Solved]:
+    """The skeleton and its motion at some times (frames,). Raises Unreadable, TooLarge."""
+    if len(seconds) * len(body.nodes) > MAX_JOINT_FRAMES:
+        raise too_large("frames", f"expected at most {MAX_JOINT_FRAMES} joints times frames")
+    motion = _Motion(container, accessors, body, animation, seconds)
+    with np.errstate(all="ignore"):  # the numbers of a broken file may overflow; checked below
+        rest = _Rest(motion, body)
+        solved = solve(rest.skeleton, len(seconds), rest.local_pose, moving=motion.moves_below())
+    for numbers in (solved.positions, solved.rotations):
+        if not np.all(np.abs(numbers) <= MAX_MAGNITUDE):
+            raise unreadable_at("nodes", f"expected positions within ±{MAX_MAGNITUDE:g}")
+    return rest.skeleton, solved
 
 
 def _times(accessors: Accessors, animation: Animation, body: Body) -> list[FloatArray]:
