@@ -12,7 +12,7 @@ from app.errors import BadField, Place
 from app.services.find.query_source import QuerySource
 
 QUERY_FILES = {
-    "file": "The query motion: BVH, AMC, C3D, FBX, NPZ or NPY. It is never stored.",
+    "file": "The query motion, in any format that an upload may have. It is never stored.",
     "skeleton": "The ASF file that an AMC file needs.",
 }
 

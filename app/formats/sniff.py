@@ -9,8 +9,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from app.errors import EmptyFile, UnknownFormat
+from app.errors import EmptyFile
 from app.formats.npz.keys import is_known_array
+from app.formats.unread import unread
 
 HEAD_BYTES = 4096
 """The number of first bytes in which text formats are recognized."""
@@ -22,6 +23,7 @@ HEAD_LINES = 50
 _MAGICS = (
     (b"Kaydara FBX Binary", "fbx"),
     (b"\x93NUMPY", "npy"),
+    (b"glTF", "glb"),
 )
 _KEYWORDS = (
     (re.compile(rb"\s*HIERARCHY\b", re.IGNORECASE), "bvh"),
@@ -35,21 +37,46 @@ _KEYWORDS = (
     ),
     (re.compile(rb"\s*root(\s+[-+.\deE]+){1,6}\s*$"), "amc"),
     (re.compile(rb"\s*; FBX \d", re.IGNORECASE), "fbx"),
+    (re.compile(rb"\s*\"?Format Version\"?,", re.IGNORECASE), "csv"),
+    (
+        re.compile(
+            rb"\s*\"?(Trajectories|Devices|Joints|Model Outputs|Segments)\"?[,;\t \"]*$",
+            re.IGNORECASE,
+        ),
+        "csv",
+    ),
+    (re.compile(rb"\s*NO_OF_FRAMES\t"), "tsv"),
+    (re.compile(rb"\s*\"?PathFileType\b", re.IGNORECASE), "trc"),
 )
+_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+_MVNX = re.compile(rb"<(\w+:)?mvnx[\s>]")
+_JSON_START = re.compile(rb"[\[{]\s*([\[{\]}\"\d.-]|$)")
+_GLTF_NAMES = (b'"asset"', b'"accessors"', b'"bufferViews"', b'"scenes"', b'"nodes"')
+_KEYPOINTS = re.compile(
+    rb'"[^"]{0,40}(keypoint|joint|landmark|people|instance|position|pose|frames)', re.IGNORECASE
+)
+_NESTED = re.compile(rb"\[\s*\[\s*[\[\d-]")
+"""Lists of numbers in a list of frames."""
+MIN_GLTF_NAMES = 2
+"""The fewest parts of a glTF file that must be named near its ends."""
 _C3D_KEY = 0x50
 _ZIP_MAGICS = (b"PK\x03\x04", b"PK\x05\x06")
 _ZIP_ENTRY = b"PK\x01\x02"
 
 
 def sniff(content: bytes) -> str:
-    """The format: "bvh", "amc", "asf", "c3d", "fbx", "npz", "npy" or "zip".
+    """The format: one of READERS in `read.py`, or "zip".
 
     content: the whole file, or at least its first HEAD_BYTES and its last TAIL_BYTES. Raises
-    EmptyFile if there is only white space, and UnknownFormat.
+    EmptyFile if there is only white space, FormatNotSupported for other known formats, and
+    UnknownFormat.
     """
     if not content or (len(content) <= HEAD_BYTES and not content.strip()):
         raise EmptyFile
-    return _binary(content) or _text(content[:HEAD_BYTES]) or _unknown(content)
+    found = _binary(content) or _json(content) or _xml(content) or _text(content[:HEAD_BYTES])
+    if found is None:
+        raise unread(content[:HEAD_BYTES])
+    return found
 
 
 def _binary(content: bytes) -> str | None:
@@ -62,6 +89,23 @@ def _binary(content: bytes) -> str | None:
     if len(content) >= 512 and content[1] == _C3D_KEY and content[0] in range(1, 100):
         return "c3d"
     return None
+
+
+def _xml(content: bytes) -> str | None:
+    """The format of an XML file, which is that of Xsens."""
+    head = content[:HEAD_BYTES].removeprefix(_BYTE_ORDER_MARK).lstrip()
+    return "mvnx" if head.startswith(b"<") and _MVNX.search(head) else None
+
+
+def _json(content: bytes) -> str | None:
+    """The format of an object in JSON: glTF files name their parts near one of their ends."""
+    head = content[:HEAD_BYTES].removeprefix(_BYTE_ORDER_MARK).lstrip()
+    if not head.startswith((b"{", b"[")) or not _JSON_START.match(head):
+        return None
+    ends = head + content[-TAIL_BYTES:]
+    if sum(name in ends for name in _GLTF_NAMES) >= MIN_GLTF_NAMES:
+        return "gltf"
+    return "json" if _KEYPOINTS.search(ends) or _NESTED.match(head) else None
 
 
 def is_zip(head: bytes) -> bool:
@@ -101,7 +145,7 @@ def _first_entry(content: bytes) -> str:
 
 
 def _text(head: bytes) -> str | None:
-    head = head.removeprefix(b"\xef\xbb\xbf")
+    head = head.removeprefix(_BYTE_ORDER_MARK)
     for line in head.splitlines()[:HEAD_LINES]:
         for keyword, name in _KEYWORDS:
             if keyword.match(line):
@@ -114,8 +158,3 @@ def _text(head: bytes) -> str | None:
 def _may_precede_keyword(line: bytes) -> bool:
     """Whether a keyword may follow: a comment, or the frame number of an AMC without header."""
     return not line or line.startswith((b"#", b";", b"//")) or line == b"1"
-
-
-def _unknown(content: bytes) -> str:
-    shown = content[:16].decode("ascii", errors="backslashreplace")
-    raise UnknownFormat(f"The content begins with {shown!r}, but no known format does")

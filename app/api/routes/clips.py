@@ -24,7 +24,8 @@ from app.services.clips.recordings import NewRecording
 router = APIRouter(prefix="/v1/clips", tags=["clips"])
 
 FILES = {
-    "file": "The motion: BVH, AMC, C3D, FBX, NPZ or NPY.",
+    "file": "The motion: BVH, AMC, C3D, TRC, FBX, GLB, glTF, VRM, MVNX, NPZ, NPY, CSV of Motive or"
+    " Nexus, TSV of Qualisys, or JSON of 3-D keypoints.",
     "skeleton": "The ASF file that an AMC file needs.",
     "audio": "The recording that goes with the motion: WAV, FLAC, OGG or MP3.",
 }

@@ -171,6 +171,8 @@ class _Reader:
 
     def _read_bone(self, frame: _Frame, line: int, words: list[bytes]) -> bool:
         """Add the line of a bone to its frame; False if it is the last line and is cut short."""
+        if self._is_cut_name(words):
+            return False
         bone = self._bone(words[0], line)
         columns = self.columns[bone]
         found, expected = len(words) - 1, columns.stop - columns.start
@@ -187,6 +189,14 @@ class _Reader:
         frame.bone_lines[bone] = line
         frame.seen.add(bone)
         return True
+
+    def _is_cut_name(self, words: list[bytes]) -> bool:
+        """Whether the last line of the file is the beginning of a bone's name."""
+        name = words[0].lower()
+        if len(words) > 1 or not self.numbering or name in self.bones:
+            return False
+        is_cut = any(bone.startswith(name) for bone in self.bones)
+        return is_cut and next(self.lines, None) is None
 
     def _bone(self, name: bytes, line: int) -> int:
         bone = self.bones.get(name)

@@ -13,6 +13,7 @@ from math import prod
 
 import numpy as np
 
+from app.errors import Unreadable
 from app.formats.common.failures import unreadable_byte
 from app.numerics.arrays import FloatArray
 
@@ -77,22 +78,34 @@ def read_parameters(content: bytes) -> tuple[Numbers, Parameters]:
     if processor is None:
         found = content[start + 3]
         raise unreadable_byte(start + 3, f"expected processor 84, 85 or 86, found {found}")
-    return Numbers(processor), _Reader(content, start + 4, Numbers(processor)).read()
+    end = start + content[start + 2] * BLOCK
+    return Numbers(processor), _Reader(content, start + 4, end, Numbers(processor)).read()
 
 
 class _Reader:
-    """Reads group after group and parameter after parameter, from the byte `at` on."""
+    """Reads group after group and parameter after parameter, from the byte `at` on.
 
-    def __init__(self, content: bytes, at: int, numbers: Numbers) -> None:
+    end: the end of the section by its number of blocks. Some files have too small a number, so
+    records behind it are read too. But some have no end mark, so what is no record there ends the
+    section.
+    """
+
+    def __init__(self, content: bytes, at: int, end: int, numbers: Numbers) -> None:
         self.content = content
         self.at = at
+        self.end = end
         self.numbers = numbers
         self.groups: dict[int, str] = {}
         self.found: list[tuple[int, str, Parameter]] = []
 
     def read(self) -> Parameters:
         for _ in range(MAX_RECORDS):
-            if not self._record():
+            try:
+                if not self._record():
+                    break
+            except Unreadable:
+                if self.at < self.end:
+                    raise
                 break
         # A group may come after its parameters, so names are joined at the end.
         named = ((f"{self.groups.get(g, '')}:{name}", value) for g, name, value in self.found)
@@ -129,8 +142,9 @@ class _Reader:
         kind, dimensions = (int(x) for x in np.frombuffer(self._bytes(at, 2), "i1"))
         size = _VALUE_BYTES.get(kind)
         if size is None or not 0 <= dimensions <= 7:
-            message = f"expected a parameter, found type {kind} with {dimensions} dimensions"
-            raise unreadable_byte(at, message)
+            message = f"expected a parameter, found type {kind} with {dimensions} dimensions: the"
+            message += " parameters are damaged from here on; save the file again by the program"
+            raise unreadable_byte(at, f"{message} that wrote it, or send TRC")
         shape = list(self._bytes(at + 2, dimensions))
         raw = self._bytes(at + 2 + dimensions, size * prod(shape))
         if kind == -1:

@@ -7,20 +7,17 @@ files in which other layers move the body are refused.
 
 from __future__ import annotations
 
-import unicodedata
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from app.errors import BadField, Place
 from app.formats.fbx.curves import read_keys, read_times, sample
-from app.formats.fbx.scene import FbxObject, FbxScene, unsupported_at
+from app.formats.fbx.objects import FbxObject, unsupported_at
+from app.formats.fbx.scene import FbxScene
 from app.formats.fbx.transforms import ANIMATED_PROPERTIES, FIXED_PROPERTIES
 from app.numerics.arrays import FloatArray, IntArray
 
-MAX_NAMES_SHOWN = 100
-"""The most names of stacks in a message."""
 _AXES = "XYZ"
 
 
@@ -123,29 +120,3 @@ def _curves(scene: FbxScene, curve_node: FbxObject) -> dict[int, FbxObject]:
 def _is_neutral(driver: Driver) -> bool:
     """Whether all curves of an upper layer are zero. Programs write layers without edits so."""
     return not any(np.any(read_keys(curve).values) for curve in driver.curves.values())
-
-
-def choose_stack(stacks: list[Stack], lengths: list[float], name: str | None) -> int:
-    """The index of the stack named `name`; without a name, of the longest stack.
-
-    lengths: (stacks,). Raises BadField if no stack has the name.
-    """
-    if name is None:
-        return int(np.argmax(lengths))
-    names = [one.stack.name for one in stacks]
-    sent_names = [_as_sent(one) for one in names]
-    if _as_sent(name) not in sent_names:
-        message = f"expected one of the file's stacks ({listed(names)}), found {name!r}"
-        raise BadField(f"stack: {message}", places=[Place("stack", message)])
-    return sent_names.index(_as_sent(name))
-
-
-def listed(names: list[str]) -> str:
-    """The names of the stacks as one text, for a message."""
-    more = f" and {len(names) - MAX_NAMES_SHOWN} more" if len(names) > MAX_NAMES_SHOWN else ""
-    return ", ".join(names[:MAX_NAMES_SHOWN]) + more
-
-
-def _as_sent(name: str) -> str:
-    """A name in the form in which HTML forms send it: NFC, without spaces at the ends."""
-    return unicodedata.normalize("NFC", name).strip()

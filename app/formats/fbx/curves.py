@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.formats.common.numbers import MAX_MAGNITUDE
-from app.formats.fbx.scene import FbxObject, unsupported_at
+from app.formats.fbx.objects import FbxObject, unsupported_at
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
 KTIME = 46_186_158_000

@@ -1,4 +1,4 @@
-"""Reads binary FBX 7 files: skeletons of limb nodes and their animation. Bytes in, Recording out.
+"""Reads FBX 6 and 7, binary and text: limb nodes and their animation. Bytes in, Recording out.
 
 At rest, the frames of all joints have the axes of the world, as in BVH. The rest pose is the pose
 by pre-rotations alone. Without pre-rotations it is the pose in which the nodes were saved. The
@@ -16,10 +16,12 @@ import numpy as np
 
 from app.formats.common.failures import too_large, unreadable_at
 from app.formats.common.numbers import MAX_MAGNITUDE
+from app.formats.common.stacks import choose_stack, stack_caution
 from app.formats.common.world_positions import MAX_JOINT_FRAMES, Solved, solve
-from app.formats.fbx.animation import Stack, choose_stack, find_stacks, listed
-from app.formats.fbx.records import FbxFile
-from app.formats.fbx.scene import FbxScene, Numbers
+from app.formats.fbx.animation import Stack, find_stacks
+from app.formats.fbx.objects import Numbers
+from app.formats.fbx.opening import open_fbx
+from app.formats.fbx.scene import FbxScene
 from app.formats.fbx.skeleton import Body, find_body
 from app.formats.fbx.timing import Timing, find_timing, key_span
 from app.formats.fbx.transforms import (
@@ -46,13 +48,13 @@ _CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
 
 
 def read_fbx(content: bytes, stack: str | None = None) -> Recording:
-    """Read a binary FBX file.
+    """Read an FBX file.
 
     stack: the name of the animation stack; by default the longest one is read. Raises
-    FormatNotSupported for text, encryption, other versions and unsupported properties, Unreadable
-    with the node or byte, BadField for a stack that does not exist, and TooLarge.
+    FormatNotSupported for encryption, other versions and unsupported properties, Unreadable with
+    the node or byte, BadField for a stack that does not exist, and TooLarge.
     """
-    scene = FbxScene(FbxFile(content))
+    scene = FbxScene(open_fbx(content))
     stacks = find_stacks(scene)
     if not stacks:
         raise unreadable_at("node Objects/AnimationStack", "expected an animation, found none")
@@ -61,30 +63,19 @@ def read_fbx(content: bytes, stack: str | None = None) -> Recording:
     # A stack without keys that move the body has no span and counts as the shortest.
     spans = [_span(scene, one, found) for one, found in zip(stacks, times, strict=True)]
     lengths = [span[1] - span[0] if span else -1.0 for span in spans]
-    chosen = choose_stack(stacks, lengths, stack)
+    names = [one.stack.name for one in stacks]
+    chosen = choose_stack(names, lengths, stack)
     span = spans[chosen]
     if span is None:
         raise stacks[chosen].stack.unreadable("expected keys that move joints, found none")
     timing = find_timing(times[chosen], span, scene.settings)
-    cautions = body.cautions + timing.cautions + _stack_caution(stacks, lengths, chosen)
+    cautions = body.cautions + timing.cautions + stack_caution(names, lengths, chosen)
     return _recording(scene, body, stacks[chosen], timing, cautions)
 
 
 def _span(scene: FbxScene, stack: Stack, times: list[IntArray]) -> tuple[float, float] | None:
     start, stop = (scene.ticks(stack.stack, name) for name in ("LocalStart", "LocalStop"))
     return key_span(times, start, stop)
-
-
-def _stack_caution(stacks: list[Stack], lengths: list[float], chosen: int) -> tuple[Caution, ...]:
-    names = [one.stack.name for one, length in zip(stacks, lengths, strict=True) if length >= 0]
-    if len(names) < 2:
-        return ()
-    read = stacks[chosen].stack.name
-    detail = (
-        f"the file has {len(names)} animations ({listed(names)}); {read} was read,"
-        " send `stack` to choose another"
-    )
-    return (Caution("stack_chosen", detail),)
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,13 +17,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.errors import FormatNotSupported
 from app.formats.common.failures import too_large, unreadable_byte
 from app.formats.common.numbers import excerpt
+from app.formats.fbx.tree import ArrayProperty, Property
 from app.numerics.arrays import FloatArray, IntArray
 
 MAGIC = b"Kaydara FBX Binary  \x00\x1a\x00"
-MIN_VERSION, MAX_VERSION = 7000, 7999
 MIN_WIDE_VERSION = 7500
 """From this version on, offsets have 64 bits."""
 MAX_ARRAY_BYTES = 64_000_000
@@ -36,7 +35,7 @@ MAX_ARRAY_BYTES do not count."""
 
 _HEADER_BYTES = len(MAGIC) + 4
 _SCALARS = {
-    "C": struct.Struct("<?"),
+    "C": struct.Struct("<B"),
     "B": struct.Struct("<b"),
     "Y": struct.Struct("<h"),
     "I": struct.Struct("<i"),
@@ -47,34 +46,13 @@ _SCALARS = {
 _ARRAYS = {"f": "<f4", "d": "<f8", "i": "<i4", "l": "<i8", "b": "|u1", "c": "|u1"}
 
 
-@dataclass(frozen=True, slots=True)
-class ArrayProperty:
-    """The position of an array: `count` numbers of `dtype` in `length` bytes from `offset` on."""
-
-    dtype: str
-    count: int
-    deflated: bool
-    offset: int
-    length: int
-
-
-Property = bool | int | float | bytes | ArrayProperty
-
-
 class FbxFile:
-    """A binary FBX file of version 7. It counts the bytes that were decompressed."""
+    """A binary FBX file. It counts the bytes that were decompressed."""
 
     def __init__(self, content: bytes) -> None:
-        """Raises FormatNotSupported for text and for versions other than 7, and Unreadable."""
-        if not content.startswith(MAGIC[:18]):
-            raise FormatNotSupported("This is an FBX file in text form; save it as binary FBX")
-        if len(content) < _HEADER_BYTES:
-            raise unreadable_byte(len(content), "expected the version, found the end of the file")
+        """Read the version. content: the magic, the version, and records."""
         self.content = content
         self.version = int.from_bytes(content[len(MAGIC) : _HEADER_BYTES], "little")
-        if not MIN_VERSION <= self.version <= MAX_VERSION:
-            shown = f"{self.version / 1000:.1f}"
-            raise FormatNotSupported(f"This is FBX {shown}; save it as binary FBX 7")
         wide = self.version >= MIN_WIDE_VERSION
         self.header = struct.Struct("<QQQB" if wide else "<IIIB")
         self._inflatable = MAX_ARRAY_BYTES + MAX_INFLATED_RATIO * len(content)

@@ -12,15 +12,26 @@ from functools import cached_property
 
 import numpy as np
 
-from app.errors import FormatNotSupported, Place, Unreadable
+from app.errors import FormatNotSupported
 from app.formats.common.failures import too_large, unreadable_at, unreadable_byte
-from app.formats.common.names import MAX_NAME_LENGTH
 from app.formats.common.numbers import MAX_MAGNITUDE
-from app.formats.fbx.records import FbxFile, FbxRecord
+from app.formats.fbx.legacy import legacy_scene
+from app.formats.fbx.objects import (
+    Connection,
+    FbxObject,
+    Numbers,
+    object_name,
+    read_properties,
+    text_of,
+    unsupported_at,
+)
+from app.formats.fbx.tree import Record, RecordFile
 from app.numerics.arrays import FloatArray
 
 MAX_OBJECTS = 500_000
 MAX_CONNECTIONS = 1_000_000
+MIN_VERSION = 7000
+"""Before this version, objects have no ids, and animations are apart from them."""
 
 _KINDS = frozenset(
     ("Model", "NodeAttribute", "AnimationStack", "AnimationLayer", "AnimationCurveNode",
@@ -28,42 +39,6 @@ _KINDS = frozenset(
 )  # fmt: skip
 _TIME_DEFINITION = 127
 """The TCDefinition of files in which a second has KTIME ticks."""
-
-Numbers = tuple[float, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class FbxObject:
-    """An object: `kind` is the name of its record, `subtype` is for example LimbNode or Null."""
-
-    id: int
-    kind: str
-    name: str
-    subtype: str
-    record: FbxRecord
-
-    @property
-    def location(self) -> str:
-        """The location of the object in the file, for messages."""
-        return f"node Objects/{self.kind} {self.id}"
-
-    def unreadable(self, message: str) -> Unreadable:
-        """An Unreadable with the location of this object."""
-        return unreadable_at(self.location, message)
-
-
-def unsupported_at(location: str, message: str) -> FormatNotSupported:
-    """A FormatNotSupported with the location of a node."""
-    return FormatNotSupported(f"{location}: {message}", places=[Place(location, message)])
-
-
-@dataclass(frozen=True, slots=True)
-class Connection:
-    """`source` belongs to `target`, or drives a property of it; "" is for no property."""
-
-    source: int
-    target: int
-    to_property: str = ""
 
 
 @dataclass(slots=True)
@@ -77,13 +52,16 @@ class _Ends:
 class FbxScene:
     """Objects by id, their properties and their connections."""
 
-    def __init__(self, file: FbxFile) -> None:
+    def __init__(self, file: RecordFile) -> None:
         """Raises Unreadable, FormatNotSupported for encrypted files, TooLarge."""
         _refuse_unsupported_headers(file)
         self._file = file
-        self.objects = {one.id: one for one in _objects(file)}
+        self._legacy = legacy_scene(file) if file.version < MIN_VERSION else None
+        objects = self._legacy.objects if self._legacy else _objects(file)
+        connections = self._legacy.connections if self._legacy else _connections(file)
+        self.objects = {one.id: one for one in objects}
         self._ends: dict[int, _Ends] = {}
-        for connection in _connections(file):
+        for connection in connections:
             self._at(connection.source).outgoing.append(connection)
             self._at(connection.target).incoming.append(connection)
         self._properties: dict[int, dict[str, Numbers]] = {}
@@ -141,6 +119,8 @@ class FbxScene:
     @cached_property
     def settings(self) -> dict[str, Numbers]:
         """The numbers of GlobalSettings."""
+        if self._legacy:
+            return self._legacy.settings
         found = self._file.top("GlobalSettings")
         return read_properties(found) if found is not None else {}
 
@@ -150,26 +130,14 @@ class FbxScene:
         found: dict[str, dict[str, Numbers]] = {}
         definitions = self._file.top("Definitions")
         for record in definitions.children("ObjectType") if definitions else ():
-            kind = _text(next(iter(record.properties(1)), b""))
+            kind = text_of(next(iter(record.properties(1)), b""))
             template = record.child("PropertyTemplate")
             if kind in _KINDS and template is not None:
                 found.setdefault(kind, read_properties(template))
         return found
 
 
-def read_properties(record: FbxRecord) -> dict[str, Numbers]:
-    """The properties in Properties70 of a record that are numbers, by name."""
-    found: dict[str, Numbers] = {}
-    block = record.child("Properties70")
-    for line in block.children("P") if block is not None else ():
-        name, *rest = line.properties() or [b""]
-        numbers = tuple(float(n) for n in rest[3:] if isinstance(n, bool | int | float))
-        if numbers:
-            found[_text(name)] = numbers
-    return found
-
-
-def _objects(file: FbxFile) -> Iterator[FbxObject]:
+def _objects(file: RecordFile) -> Iterator[FbxObject]:
     block = file.top("Objects")
     if block is None:
         raise unreadable_at("node Objects", "expected objects, found none")
@@ -182,21 +150,14 @@ def _objects(file: FbxFile) -> Iterator[FbxObject]:
             yield _object(record)
 
 
-def _object(record: FbxRecord) -> FbxObject:
+def _object(record: Record) -> FbxObject:
     number, name, subtype, *_ = [*record.properties(3), 0, b"", b""]
     if not isinstance(number, int) or isinstance(number, bool) or record.property_count < 3:
         raise unreadable_byte(record.offset, f"expected id, name and type of a {record.name}")
-    return FbxObject(number, record.name, object_name(name), _text(subtype), record)
+    return FbxObject(number, record.name, object_name(name), text_of(subtype), record)
 
 
-def object_name(name: object) -> str:
-    """The printable name of an object, from bytes with a name, a separator and a class."""
-    text = name.split(b"\x00\x01")[0] if isinstance(name, bytes) else b""
-    shown = text[: 4 * MAX_NAME_LENGTH].decode("utf-8", errors="replace")[:MAX_NAME_LENGTH]
-    return "".join(char if char.isprintable() else "�" for char in shown)
-
-
-def _connections(file: FbxFile) -> Iterator[Connection]:
+def _connections(file: RecordFile) -> Iterator[Connection]:
     block = file.top("Connections")
     for count, record in enumerate(block.children("C") if block else ()):
         if count >= MAX_CONNECTIONS:
@@ -206,10 +167,10 @@ def _connections(file: FbxFile) -> Iterator[Connection]:
             _, source, target, to_property, *_ = [*found, b""]
             if not isinstance(source, int) or not isinstance(target, int):
                 raise unreadable_byte(record.offset, "expected the ids of two objects")
-            yield Connection(source, target, _text(to_property))
+            yield Connection(source, target, text_of(to_property))
 
 
-def _refuse_unsupported_headers(file: FbxFile) -> None:
+def _refuse_unsupported_headers(file: RecordFile) -> None:
     header = file.top("FBXHeaderExtension")
     encryption = header.child("EncryptionType") if header else None
     if encryption is not None and encryption.properties(1) not in ([], [0]):
@@ -220,7 +181,3 @@ def _refuse_unsupported_headers(file: FbxFile) -> None:
         raise unsupported_at(
             "node FBXHeaderExtension/OtherFlags", "expected times as FBX 7 counts them"
         )
-
-
-def _text(value: object) -> str:
-    return value.decode("utf-8", errors="replace") if isinstance(value, bytes) else ""

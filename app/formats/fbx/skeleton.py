@@ -15,7 +15,8 @@ import numpy as np
 
 from app.formats.common.failures import too_large, unreadable_at
 from app.formats.common.limits import MAX_JOINTS
-from app.formats.fbx.scene import FbxObject, FbxScene
+from app.formats.fbx.objects import FbxObject
+from app.formats.fbx.scene import FbxScene
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import BoolArray, IntArray
 

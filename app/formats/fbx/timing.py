@@ -13,7 +13,7 @@ import numpy as np
 from app.formats.bvh.frames import MAX_FRAMES, MAX_RATE, MIN_RATE, NEAR_WHOLE
 from app.formats.common.failures import too_large
 from app.formats.fbx.curves import KTIME
-from app.formats.fbx.scene import Numbers
+from app.formats.fbx.objects import Numbers
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray, IntArray
 

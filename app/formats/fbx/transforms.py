@@ -15,7 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.formats.fbx.scene import FbxObject, FbxScene, unsupported_at
+from app.formats.fbx.objects import FbxObject, unsupported_at
+from app.formats.fbx.scene import FbxScene
 from app.motion.skeleton.kinematics import joints_by_depth
 from app.motion.skeleton.rotations import (
     euler_to_quaternions,

@@ -5,7 +5,8 @@ number. An order is accepted if its bones are equally long on the left and on th
 their length over time, and if no other order with this number of joints does the same.
 
 Sources: the documentation of each order (SMPL, SMPL-H and SMPL-X by MPI; LAFAN1 by Ubisoft;
-Human3.6M in 17 joints as in VideoPose3D; Kinect v2 SDK; OpenPose BODY_25).
+Human3.6M in 17 joints as in VideoPose3D; Kinect v2 SDK; OpenPose BODY_25; COCO; Halpe; MediaPipe
+Pose).
 """
 
 from __future__ import annotations
@@ -109,6 +110,20 @@ def _with_fingers(
 
 _HEAD, _L_WRIST, _R_WRIST = (SMPL_BODY[0].index(n) for n in ("Head", "L_Wrist", "R_Wrist"))
 
+_COCO = (
+    "Nose LEye REye LEar REar LeftShoulder RightShoulder LeftElbow RightElbow LeftWrist RightWrist"
+    " LeftHip RightHip LeftKnee RightKnee LeftAnkle RightAnkle"
+)
+"""Small bones of the face are not compared, so their names do not begin with Left."""
+_COCO_CHAINS = (
+    "Nose LEye LEar",
+    "Nose REye REar",
+    "Nose LeftShoulder LeftElbow LeftWrist",
+    "Nose RightShoulder RightElbow RightWrist",
+    "LeftShoulder LeftHip LeftKnee LeftAnkle",
+    "RightShoulder RightHip RightKnee RightAnkle",
+)
+
 LAYOUTS: tuple[JointLayout, ...] = (
     JointLayout("SMPL body", *SMPL_BODY),
     JointLayout("SMPL", SMPL_BODY[0] + ("L_Hand", "R_Hand"), SMPL_BODY[1] + (_L_WRIST, _R_WRIST)),
@@ -151,6 +166,49 @@ LAYOUTS: tuple[JointLayout, ...] = (
             "HandRight ThumbRight",
             "SpineBase HipLeft KneeLeft AnkleLeft FootLeft",
             "SpineBase HipRight KneeRight AnkleRight FootRight",
+        ),
+    ),
+    JointLayout("COCO", *_ordered(_COCO, *_COCO_CHAINS)),
+    JointLayout(
+        "Halpe 26",
+        *_ordered(
+            f"{_COCO} Head Neck Hips LeftBigToe RightBigToe LeftSmallToe RightSmallToe LeftHeel"
+            " RightHeel",
+            *_COCO_CHAINS,
+            "Nose Head",
+            "Nose Neck Hips",
+            "LeftAnkle LeftBigToe",
+            "LeftAnkle LeftSmallToe",
+            "LeftAnkle LeftHeel",
+            "RightAnkle RightBigToe",
+            "RightAnkle RightSmallToe",
+            "RightAnkle RightHeel",
+        ),
+    ),
+    JointLayout(
+        "MediaPipe",
+        *_ordered(
+            "Nose LEyeInner LEye LEyeOuter REyeInner REye REyeOuter LEar REar LMouth RMouth"
+            " LeftShoulder RightShoulder LeftElbow RightElbow LeftWrist RightWrist LeftPinky"
+            " RightPinky LeftIndex RightIndex LeftThumb RightThumb LeftHip RightHip LeftKnee"
+            " RightKnee LeftAnkle RightAnkle LeftHeel RightHeel LeftFootIndex RightFootIndex",
+            *_COCO_CHAINS,
+            "LEye LEyeInner",
+            "LEye LEyeOuter",
+            "REye REyeInner",
+            "REye REyeOuter",
+            "Nose LMouth",
+            "Nose RMouth",
+            "LeftWrist LeftPinky",
+            "LeftWrist LeftIndex",
+            "LeftWrist LeftThumb",
+            "RightWrist RightPinky",
+            "RightWrist RightIndex",
+            "RightWrist RightThumb",
+            "LeftAnkle LeftHeel",
+            "LeftAnkle LeftFootIndex",
+            "RightAnkle RightHeel",
+            "RightAnkle RightFootIndex",
         ),
     ),
     JointLayout(

@@ -12,7 +12,7 @@ from app.formats.npz.arrays import Archive, numbers
 KEYS: dict[str, tuple[str, ...]] = {
     "positions": (
         "positions", "jointpositions", "globalpositions", "joints3d", "keypoints3d", "keypoints",
-        "joints", "markers", "xyz", "pos",
+        "posedjoints", "worldpositions", "points", "joints", "markers", "xyz", "pos", "arr0",
     ),
     "joint_names": (
         "jointnames", "names", "joints", "markers", "bonenames", "markernames", "labels",

@@ -37,10 +37,14 @@ from app.formats.npz.joint_layouts import layout_of
 from app.formats.npz.keys import NamedArrays
 from app.formats.npz.smpl import read_smpl
 from app.motion.canonical.units import METERS_PER_UNIT
+from app.motion.skeleton.occlusion import fill_gaps
 from app.motion.skeleton.recording import Caution, Recording
 from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray, IntArray
 
+RATE_FOR_GAPS = 30.0
+"""Hz: the rate that converts gaps to seconds if the file does not give its rate."""
+MAX_GAPS_SHOWN = 8
 FRAME_RATES = (0.1, 10_000.0)
 """Hz: the smallest and the largest number that counts as a frame rate."""
 
@@ -51,9 +55,11 @@ def read_npz(content: bytes) -> Recording:
     Raises Unreadable with the key, frame or joint, and TooLarge.
     """
     arrays = NamedArrays(Archive(content))
-    if "positions" in arrays:
+    has_parameters = "poses" in arrays or "pose_body" in arrays
+    # AMASS keeps the markers from which its poses were computed. The poses are the motion.
+    if "positions" in arrays and not (has_parameters and arrays.key("positions") == "markers"):
         return _read_positions(arrays)
-    if "poses" in arrays or "pose_body" in arrays:
+    if has_parameters:
         return _read_parameters(arrays)
     found = ", ".join(arrays.keys[:10])
     raise unreadable_at(
@@ -66,14 +72,16 @@ def read_npy_positions(content: bytes) -> Recording:
 
     Raises Unreadable with the frame and the joint, and TooLarge.
     """
-    positions = _checked_positions(read_npy(content), "array")
+    positions, filled = _filled(_checked_positions(read_npy(content), "array"), None, None)
     skeleton, cautions = _skeleton_of_order(positions)
-    return _recording("npy", skeleton, positions, None, cautions=cautions)
+    return _recording("npy", skeleton, positions, None, cautions=filled + cautions)
 
 
 def _read_positions(arrays: NamedArrays) -> Recording:
     positions = _checked_positions(arrays.read("positions"), arrays.key("positions"))
     names = _names(arrays, positions.shape[1])
+    rate = _frame_rate(arrays)
+    positions, filled = _filled(positions, names, rate)
     cautions: tuple[Caution, ...] = ()
     if names is None:
         skeleton, cautions = _skeleton_of_order(positions)
@@ -87,10 +95,10 @@ def _read_positions(arrays: NamedArrays) -> Recording:
         "npz",
         skeleton,
         positions,
-        _frame_rate(arrays),
+        rate,
         unit=_unit(arrays),
         up_axis=_up_axis(arrays),
-        cautions=cautions,
+        cautions=filled + cautions,
     )
 
 
@@ -127,11 +135,45 @@ def _checked_positions(array: NDArray[Any] | None, key: str) -> FloatArray:
     if joints > MAX_JOINTS or frames * joints > MAX_JOINT_FRAMES:
         limits = f"{MAX_JOINTS} joints and {MAX_JOINT_FRAMES} joints times frames"
         raise too_large(key, f"expected at most {limits}, found {frames} frames x {joints} joints")
-    return np.ascontiguousarray(_checked_numbers(numbers(array, key), key), dtype=np.float32)
+    checked = _checked_numbers(numbers(array, key), key, nan=True)
+    return np.ascontiguousarray(checked, dtype=np.float32)
 
 
-def _checked_numbers(array: NDArray[Any], key: str) -> FloatArray:
-    """The same array. Raises Unreadable with the first NaN or number beyond MAX_MAGNITUDE."""
+def _filled(
+    positions: FloatArray, names: list[str] | None, rate: float | None
+) -> tuple[FloatArray, tuple[Caution, ...]]:
+    """The positions with filled gaps (NaN), and a caution about them.
+
+    Raises Unreadable with the joint and the frames of a gap that is too long to be filled.
+    """
+    if np.isfinite(positions).all():
+        return positions, ()
+    filled = fill_gaps(positions, rate or RATE_FOR_GAPS)
+    places = [
+        Place(
+            f"frame {gap.start}, joint {gap.marker}" + (f" ({names[gap.marker]})" if names else ""),
+            f"expected a position, found NaN in {gap.end - gap.start} frames",
+        )
+        for gap in filled.long_gaps[:MAX_GAPS_SHOWN]
+    ]
+    if places:
+        shown = "; ".join(f"{place.location}: {place.message}" for place in places)
+        raise Unreadable(f"Joints are hidden for too long to be filled in: {shown}", places=places)
+    share = 100 * filled.frames / (positions.shape[0] * positions.shape[1])
+    detail = f"joints hidden for short times were filled in: {share:.1f} % of their frames"
+    return filled.positions.astype(np.float32), (Caution("gaps_filled", detail),)
+
+
+def _checked_numbers(array: NDArray[Any], key: str, *, nan: bool = False) -> FloatArray:
+    """The same array. Raises Unreadable with the first number beyond MAX_MAGNITUDE.
+
+    nan: whether NaN is accepted; otherwise it is refused too.
+    """
+    with np.errstate(invalid="ignore"):  # a signaling NaN would give a warning
+        # fmax ignores NaN unless all numbers are NaN.
+        largest = float(np.fmax.reduce(np.abs(array), axis=None)) if nan else np.inf
+        if not largest > MAX_MAGNITUDE:
+            return array
     if max(float(array.max()), -float(array.min())) <= MAX_MAGNITUDE and _is_finite(array):
         return array
     # A signaling NaN would give a warning.

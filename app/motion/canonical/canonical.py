@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.errors import BadField, NotHuman, Place, Unreadable
+from app.errors import BadField, Place, Unreadable
 from app.motion.canonical.extent import check_extent
 from app.motion.canonical.frame_rate import judge_frame_rate
 from app.motion.canonical.part_bodies import (
@@ -24,6 +24,7 @@ from app.motion.plausibility.doubts import doubts_about
 from app.motion.roles.bodies import roles_of_one_body
 from app.motion.roles.joint_roles import ESSENTIAL_ROLES, SUN_ROLES, JointRole
 from app.motion.roles.middles import with_given_middles, with_missing_middles
+from app.motion.roles.missing_joints import no_joints_for
 from app.motion.roles.roles import given_roles
 from app.motion.skeleton.kinematics import rest_positions
 from app.motion.skeleton.recording import FRAME_RATES, Caution, Recording
@@ -54,7 +55,7 @@ def canonicalize(
         recording.skeleton.names, recording.skeleton.parents, recording.positions, given
     )
     recording, found, made = with_missing_middles(recording, found)
-    missing = _missing_roles(found)
+    missing = _missing_roles(found, recording.skeleton.names)
     axis, axis_cautions = _active_up_axis(recording, found, up_axis)
     unit = _active_unit(recording, found, metres_per_unit)
     positions = to_y_up(recording.positions, axis) * np.float32(unit.metres_per_unit)
@@ -123,17 +124,14 @@ def _within(field: str, value: float, limits: tuple[float, float], unit: str) ->
     return float(value)
 
 
-def _missing_roles(found: Mapping[JointRole, int]) -> tuple[JointRole, ...]:
+def _missing_roles(found: Mapping[JointRole, int], names: Sequence[str]) -> tuple[JointRole, ...]:
     """The roles of SUN_ROLES that were not found.
 
     Raises NotHuman if one of them is essential, unless the upper or the lower body is there.
     """
     essential = [role for role in ESSENTIAL_ROLES if role not in found]
     if essential and not (is_lower_body(found) or is_upper_body(found)):
-        raise NotHuman(
-            f"The skeleton has no joint for: {', '.join(essential)}",
-            places=[Place(f"roles.{role}", "expected a joint, found none") for role in essential],
-        )
+        raise no_joints_for(essential, names)
     return tuple(role for role in SUN_ROLES if role not in found)
 
 

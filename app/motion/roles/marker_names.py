@@ -2,7 +2,9 @@
 
 The marker sets are Vicon plug-in-gait (`LKNE`, `Bob:LASI`), CMU's own (`LFWT`), Helen Hayes as
 Cortex names it (`L.Knee.Medial`, `V.Sacral`), the ISB's anatomical landmarks (`LFLE`), OptiTrack's
-baseline (`WaistLFront`). Case and separators do not matter. Sources: Vicon's plug-in gait reference
+baseline (`WaistLFront`), Xsens MVN (`pLeftASI`), CAST (`LLEPI`, `LLFC`), Rizzoli (`LLE`, `LLM`),
+Qualisys (`HeadL`, `SpineTop`), OpenCap (`r_mknee_study`). Case and separators do not matter, and
+the side may come last (`ASISL`). Sources: Vicon's plug-in gait reference
 guide; Kadaba et al. 1990 (Helen Hayes); Leardini et al. 2007 (ISB names).
 """
 
@@ -15,50 +17,117 @@ from app.motion.roles.joint_names import side_and_word
 
 # Places on both sides, and their labels; ? is L or R.
 _SIDED: dict[str, tuple[str, ...]] = {
-    "ASI": ("?ASI", "?ASIS", "?IAS", "?FWT", "WAIST?FRONT", "?WAISTFRONT"),
-    "PSI": ("?PSI", "?PSIS", "?IPS", "?BWT", "WAIST?BACK", "?WAISTBACK"),
+    "ASI": ("?ASI", "?ASIS", "?IAS", "?FWT", "WAIST?FRONT", "?WAISTFRONT", "?SIAS"),
+    "PSI": ("?PSI", "?PSIS", "?IPS", "?BWT", "WAIST?BACK", "?WAISTBACK", "?SIPS"),
     "HJC": ("?HJC",),
     "KJC": ("?KJC",),
-    "KNE": ("?KNE", "?KNEE", "?KNEELAT", "?KNEELATERAL", "?LATKNEE", "?KNEEOUT", "?FLE", "?LEK"),
+    "KNE": (
+        "?KNE", "?KNEE", "?KNEELAT", "?KNEELATERAL", "?LATKNEE", "?KNEEOUT", "?FLE", "?LEK",
+        "?LEPI", "?LFC", "?KNEL", "?LE", "?LKNE", "?KNELAT", "?LKNEE", "?KNEELATEPICONDYLE",
+        "?LATFEMEPI",
+    ),
     "KNM": (
-        "?KNM", "?MKNE", "?KNEM", "?KNI", "?KNEEMED", "?KNEEMEDIAL", "?MEDKNEE", "?KNEEIN",
-        "?FME", "?MEK",
+        "?KNM", "?MKNE", "?KNEM", "?KNI", "?KNEEMED", "?KNEEMEDIAL", "?MEDKNEE", "?KNEEIN", "?FME",
+        "?MEK", "?MEPI", "?MFC", "?ME", "?MKNEE", "?KNEMED", "?KNEEMEDEPICONDYLE", "?MEDFEMEPI",
     ),
     "AJC": ("?AJC",),
-    "ANK": ("?ANK", "?ANKLE", "?ANKLELAT", "?ANKLELATERAL", "?LATANKLE", "?ANKLEOUT", "?FAL"),
+    "ANK": (
+        "?ANK", "?ANKLE", "?ANKLELAT", "?ANKLELATERAL", "?LATANKLE", "?ANKLEOUT", "?FAL", "?LMAL",
+        "?ANKL", "?LM", "?LATMALLEOLUS", "?LMALL", "?LANK", "?LANKLE",
+    ),
     "ANM": (
         "?ANM", "?MANK", "?ANKM", "?MED", "?ANKLEMED", "?ANKLEMEDIAL", "?MEDANKLE", "?ANKLEIN",
-        "?TAM",
+        "?TAM", "?MMAL", "?MM", "?MEDMALLEOLUS", "?MMALL", "?MANKLE",
     ),
-    "TOE": ("?TOE", "?TOES", "?TOETIP", "?MT2", "?SMH"),
-    "MT1": ("?MT1", "?FMH", "?TOEIN"),
-    "MT5": ("?MT5", "?VMH", "?TOEOUT"),
+    "TOE": (
+        "?TOE", "?TOES", "?TOETIP", "?MT2", "?SMH", "?SM", "?FOREFOOT2", "?2MH", "?MTH2", "?TOE2",
+    ),
+    "MT1": ("?MT1", "?FMH", "?TOEIN", "?FM", "?FOREFOOTIN", "?1MH", "?MTH1"),
+    "MT5": ("?MT5", "?VMH", "?TOEOUT", "?VM", "?FOREFOOTOUT", "?5META", "?5MH", "?MTH5"),
     "SJC": ("?SJC",),
     "SHO": (
-        "?SHO", "?SHOULDER", "?ACR", "?ACROMION", "?SAE", "?SHOULDERTOP", "?SHOTOP", "?SHLD",
+        "?SHO", "?SHOULDER", "?ACR", "?ACROMION", "?SAE", "?SHOULDERTOP", "?SHOTOP", "?SHLD", "?SH",
+        "?AC", "?ACROMIO",
     ),
     "EJC": ("?EJC",),
-    "ELB": ("?ELB", "?ELBOW", "?ELBLAT", "?ELBOWLAT", "?ELBOWLATERAL", "?ELBOWOUT", "?HLE"),
+    "ELB": (
+        "?ELB", "?ELBOW", "?ELBLAT", "?ELBOWLAT", "?ELBOWLATERAL", "?ELBOWOUT", "?HLE", "?EL",
+        "?LELBOW", "?ELBL", "?ARMLATEPICONDYLE", "?LHE", "?ELBLATERAL",
+    ),
     "ELM": (
         "?ELM", "?MELB", "?ELBM", "?ELBMED", "?ELBOWMED", "?ELBOWMEDIAL", "?ELBOWIN", "?HME",
-        "?IEL",
+        "?IEL", "?MELBOW", "?ARMMEDEPICONDYLE", "?MHE",
     ),
     "WJC": ("?WJC",),
-    "WRA": ("?WRA", "?RSP", "?WRISTIN", "?WRISTRAD"),
-    "WRB": ("?WRB", "?USP", "?WRISTOUT", "?WRISTULN"),
-    "WRI": ("?WRI", "?WRIST", "?WRT"),
+    "WRA": (
+        "?WRA", "?RSP", "?WRISTIN", "?WRISTRAD", "?LWRIST", "?RADIALSTYLOID", "?WRISTLAT", "?RS",
+        "?STYLR",
+    ),
+    "WRB": (
+        "?WRB", "?USP", "?WRISTOUT", "?WRISTULN", "?MWRIST", "?ULNARSTYLOID", "?WRISTMED", "?US",
+        "?STYLU",
+    ),
+    "WRI": ("?WRI", "?WRIST", "?WRT", "?WR"),
     "FIN": ("?FIN", "?FINGER", "?HANDOUT", "?HAND"),
-    "FHD": ("?FHD", "?FHEAD", "?HEADFRONT"),
+    "FHD": ("?FHD", "?FHEAD", "?HEADFRONT", "?HEAD", "?AURICULARIS", "?TRAGUS"),
     "BHD": ("?BHD", "?BHEAD", "?HEADBACK"),
 }  # fmt: skip
 _MIDDLE: dict[str, tuple[str, ...]] = {
-    "SACR": ("SACR", "SACRUM", "VSACRAL", "SACRAL", "MBWT"),
-    "C7": ("C7", "CV7", "BACKTOP"),
+    "SACR": (
+        "SACR",
+        "SACRUM",
+        "VSACRAL",
+        "SACRAL",
+        "MBWT",
+        "S1",
+        "SAC",
+        "VSACRUM",
+        "SACRO",
+    ),
+    "C7": (
+        "C7",
+        "CV7",
+        "BACKTOP",
+        "C7SPINALPROCESS",
+        "SPINETOP",
+    ),
     "NECK": ("NECK",),
-    "T10": ("T10", "TV10", "TV8"),
-    "CLAV": ("CLAV", "CLAVICLE", "SJN", "JN"),
-    "STRN": ("STRN", "STERN", "STERNUM", "SXS", "XIPHOID"),
-    "TOPHD": ("TOPHEAD", "HEADTOP", "ARIEL"),
+    "T10": (
+        "T10",
+        "TV10",
+        "TV8",
+        "T8",
+        "T8SPINALPROCESS",
+        "TH10",
+        "SPINETHORACIC10",
+    ),
+    "CLAV": (
+        "CLAV",
+        "CLAVICLE",
+        "SJN",
+        "JN",
+        "IJ",
+        "SUPRASTERNALE",
+        "MANUBRIUM",
+        "JUGULAR",
+    ),
+    "STRN": (
+        "STRN",
+        "STERN",
+        "STERNUM",
+        "SXS",
+        "XIPHOID",
+        "PX",
+        "XIPH",
+        "XP",
+    ),
+    "TOPHD": (
+        "TOPHEAD",
+        "HEADTOP",
+        "ARIEL",
+        "TOPOFHEAD",
+        "VERTEX",
+    ),
     "FRONTHD": ("FRONTHEAD", "HEADFRONT"),
     "REARHD": ("REARHEAD", "HEADREAR", "HEADBACK", "BACKHEAD"),
 }
@@ -70,6 +139,8 @@ _PLACES = {alias: place for place, aliases in _MIDDLE.items() for alias in alias
 }
 _UPPER_ARMS = ("arm", "upperarm", "uparm", "armupper", "humerus")
 """Words for a joint at the upper end of the upper arm."""
+_XSENS = re.compile(r"^p(?=[A-Z])")
+"""The letter with which Xsens begins the labels of points on the skin."""
 _UNLABELED = re.compile(r"(|\*\d*|U_?\d+|UNLABELL?ED.*|M\d{3,}|UN-?NAMED.*)", re.IGNORECASE)
 _NO_MARKER = re.compile(r".*(Angles?|Forces?|Moments?|Powers?|GRF)$", re.IGNORECASE)
 """Labels of results of gait models, which are stored as points but are not markers."""
@@ -88,8 +159,10 @@ def is_marker(label: str) -> bool:
 
 def place_on_body(label: str) -> str | None:
     """The place on the body, for example "LKNE" or "C7"; None if no marker set has the label."""
-    key = re.sub(r"[\W_]", "", label).upper()
+    key = re.sub(r"[\W_]", "", _XSENS.sub("", label)).upper().removesuffix("STUDY")
     key = re.sub(r"^(LEFT|RIGHT)", lambda side: side.group()[0], key)
+    if key not in _PLACES and key.endswith(("L", "R")):
+        key = key[-1] + key[:-1]
     return _PLACES.get(key)
 
 

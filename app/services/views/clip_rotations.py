@@ -15,7 +15,7 @@ from app.services.clips.ingest import analysis_request
 from app.services.library.library import Library
 from app.store.clips.record import ClipRecord
 
-POSITION_FORMATS = frozenset({"c3d", "npy"})
+POSITION_FORMATS = frozenset({"c3d", "csv", "json", "npy", "trc", "tsv"})
 """File formats without rotations; such files need not be read again."""
 
 

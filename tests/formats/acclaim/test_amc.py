@@ -166,6 +166,14 @@ def test_bones_without_channels_in_the_motion_stay_at_rest() -> None:
     assert codes(recording) == ["bones_missing"]
 
 
+def test_a_file_that_is_cut_inside_a_name_is_read_to_its_last_whole_frame() -> None:
+    for cut in (b"wer 70 80\n", b"r 70 80\n", b" 70 80\n"):
+        recording = read_amc(MOTION.removesuffix(cut), SKELETON)
+        assert codes(recording) == ["truncated"]
+    with pytest.raises(Unreadable, match="expected a bone"):
+        read_amc(MOTION + b"lox\n", SKELETON)
+
+
 def test_an_incomplete_last_frame_is_left_out() -> None:
     last = b"root 4 5 6 10 20 30\nupper 40 50 60\nlower 70 80\n"
     for cut in (b"80\n", b"lower 70 80\n", b"upper 40 50 60\nlower 70 80\n", last):

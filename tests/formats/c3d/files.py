@@ -70,10 +70,14 @@ def c3d(
     first: int = 1,
     parameters: Mapping[str, Value] | None = None,
     last: int | None = None,
+    header_analog: int | None = None,
+    end_mark: bool = True,
 ) -> bytes:
     """A C3D file of positions (frames, points, 3); NaN is written as residual -1.
 
     parameters: by "GROUP:NAME", over those that every file has; scale: positive for integers.
+    header_analog: written in place of the true number. end_mark: whether the parameters end with
+    one; without it, other bytes follow their blocks.
     """
     frames, points = positions.shape[:2]
     writer = Writer(processor)
@@ -89,10 +93,16 @@ def c3d(
             group, _, own = name.partition(":")
             section += writer.parameter(names.index(group) + 1, own, value)
     blocks = (len(section) + 4 + 512) // 512
-    section = bytes([1, 80, blocks, PROCESSORS[processor]]) + section
     data_block = 2 + blocks
+    section = bytes([1, 80, blocks, PROCESSORS[processor]]) + section
+    if not end_mark:
+        # The last parameter fills the blocks, and what follows is no parameter.
+        name = b"\x04" + bytes([len(names)]) + b"FILL"
+        section += name + writer.integers([512 * blocks - len(section) - 6]) + b"\x02\x00\x07\x00"
+        section = section.ljust(512 * blocks, b"\x00") + b"CCCC" * 128
+        data_block += 1
     end = first + frames - 1 if last is None else last
-    words = [points, analog, first, min(end, 65535), 10]
+    words = [points, analog if header_analog is None else header_analog, first, min(end, 65535), 10]
     header = bytes([2, 80]) + np.array(words).astype(f"{writer.ends}u2").tobytes()
     header += writer.floats([scale]) + writer.integers([data_block, 0]) + writer.floats([rate])
     return (

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.errors import Unreadable
+from app.errors import FormatNotSupported, Unreadable
 from app.formats.c3d.points import read_points
 from tests.formats.c3d.files import PROCESSORS, c3d, marker_person, stacked
 
@@ -48,7 +48,7 @@ def test_labels_in_more_than_one_parameter() -> None:
     assert list(points.labels) == labels
 
 
-@pytest.mark.parametrize("keep", [0.3, 0.6, 0.99])
+@pytest.mark.parametrize("keep", [0.3, 0.6, 0.85])
 @pytest.mark.parametrize("scale", [-1.0, 0.1])
 def test_a_truncated_file_is_refused(keep: float, scale: float) -> None:
     content = c3d(MARKERS, LABELS, scale=scale)
@@ -60,6 +60,55 @@ def test_a_truncated_file_is_refused(keep: float, scale: float) -> None:
         read_points(content[:600])
 
 
+def test_a_file_without_its_last_frames_is_read() -> None:
+    content = c3d(MARKERS, LABELS)
+    points = read_points(content[: -2 * 16 * len(LABELS)])
+    assert len(points.positions) == len(MARKERS) - 2
+    assert [caution.code for caution in points.cautions] == ["frames_mismatch"]
+    assert np.allclose(points.positions, MARKERS[:-2], atol=1e-3)
+
+
+@pytest.mark.parametrize("declared", [6, 0, 999])
+def test_a_wrong_number_of_analog_samples(declared: int) -> None:
+    rates = {"ANALOG:USED": 6, "ANALOG:RATE": 1000.0}
+    content = c3d(MARKERS, LABELS, analog=60, header_analog=declared, parameters=rates)
+    points = read_points(content)
+    assert np.allclose(points.positions, MARKERS, atol=1e-3)
+    assert [caution.code for caution in points.cautions] == ["header_mismatch"]
+
+
+def test_other_analog_parameters_do_not_change_a_right_header() -> None:
+    rates = {"ANALOG:USED": 6, "ANALOG:RATE": 2000.0}
+    points = read_points(c3d(MARKERS, LABELS, analog=60, parameters=rates))
+    assert np.allclose(points.positions, MARKERS, atol=1e-3)
+    assert points.cautions == ()
+
+
+@pytest.mark.parametrize("processor", PROCESSORS)
+def test_parameters_without_an_end_mark_end_with_their_blocks(processor: str) -> None:
+    points = read_points(c3d(MARKERS, LABELS, processor=processor, end_mark=False))
+    assert list(points.labels) == LABELS
+    assert np.allclose(points.positions, MARKERS, atol=1e-2)
+
+
+def test_residuals_that_are_all_negative_are_ignored() -> None:
+    content = bytearray(c3d(MARKERS, LABELS))
+    rows = np.frombuffer(content, "<f4", 4 * MARKERS.shape[0] * MARKERS.shape[1], 512 * (
+        content[16] - 1
+    )).reshape(-1, 4)  # fmt: skip
+    rows[:, 3] = -1
+    points = read_points(bytes(content))
+    assert np.allclose(points.positions, MARKERS, atol=1e-3)
+    assert [caution.code for caution in points.cautions] == ["residuals_ignored"]
+
+
+def test_rotations_alone_are_named() -> None:
+    content = bytearray(c3d(MARKERS, LABELS, parameters={"ROTATION:USED": 17}))
+    content[2:4] = b"\0\0"
+    with pytest.raises(FormatNotSupported, match="rotations"):
+        read_points(bytes(content))
+
+
 def test_more_frames_than_sixteen_bits_can_count() -> None:
     track = np.ones((70_000, 1, 3)) * np.arange(1, 70_001)[:, None, None]
     both = {"TRIAL:ACTUAL_START_FIELD": [1, 0], "TRIAL:ACTUAL_END_FIELD": [4464, 1]}
@@ -67,6 +116,18 @@ def test_more_frames_than_sixteen_bits_can_count() -> None:
     for last, parameters in ((None, both | full), (4464, both), (None, {"POINT:FRAMES": 70_000.0})):
         content = c3d(track, ["A"], parameters=parameters, last=last)
         assert len(read_points(content).positions) == 70_000
+    saturated = {"POINT:FRAMES": -1}
+    for last, more, codes in (
+        (65535, {"POINT:LONG_FRAMES": 70_000.0}, []),
+        (65535, {}, ["frames_mismatch"]),  # all fields are full, and more data follows
+        (4464, {"POINT:FRAMES": 4464}, ["frames_mismatch"]),  # the count went over 65,536
+    ):
+        points = read_points(c3d(track, ["A"], parameters=saturated | more, last=last))
+        assert len(points.positions) == 70_000
+        assert [caution.code for caution in points.cautions] == codes
+    unread = read_points(c3d(track, ["A"], parameters={"POINT:FRAMES": 1000}, last=1000))
+    assert len(unread.positions) == 1000
+    assert [caution.code for caution in unread.cautions] == ["data_unread"]
     telling = read_points(c3d(track[:50], ["A"], parameters={"POINT:FRAMES": 80}))
     assert len(telling.positions) == 50
     assert [caution.code for caution in telling.cautions] == ["frames_mismatch"]

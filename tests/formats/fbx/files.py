@@ -70,6 +70,10 @@ class Array:
     """The declared count of the numbers in `stored`."""
 
 
+class Letter(str):
+    """A letter in a list of keys of version 6."""
+
+
 @dataclass(frozen=True)
 class Record:
     name: str
@@ -87,23 +91,36 @@ def fbx(
     header: Sequence[Record] = (),
     deflate: bool = True,
 ) -> bytes:
-    """The bytes of a scene."""
+    """The bytes of a binary file with a scene."""
+    records = scene(
+        bones, takes, settings=settings, template=template, header=header, deflate=deflate
+    )
+    return document(records, version)
+
+
+def scene(
+    bones: Sequence[Bone],
+    takes: Sequence[Take] = (),
+    *,
+    settings: Mapping[str, Any] | None = None,
+    template: Mapping[str, Any] | None = None,
+    header: Sequence[Record] = (),
+    deflate: bool = True,
+) -> list[Record]:
+    """The records of a scene of version 7."""
     objects, connections = _nodes(bones)
     for index, take in enumerate(takes):
         more, links = _take(take, 1_000_000 * (index + 1), deflate)
         objects += more
         connections += links
     definition = Record("PropertyTemplate", [b"FbxNode"], [properties70(template or {})])
-    return document(
-        [
-            Record("FBXHeaderExtension", [], [Record("EncryptionType", [0]), *header]),
-            Record("GlobalSettings", [], [properties70(settings or {})]),
-            Record("Definitions", [], [Record("ObjectType", [b"Model"], [definition])]),
-            Record("Objects", [], objects),
-            Record("Connections", [], [Record("C", link) for link in connections]),
-        ],
-        version,
-    )
+    return [
+        Record("FBXHeaderExtension", [], [Record("EncryptionType", [0]), *header]),
+        Record("GlobalSettings", [], [properties70(settings or {})]),
+        Record("Definitions", [], [Record("ObjectType", [b"Model"], [definition])]),
+        Record("Objects", [], objects),
+        Record("Connections", [], [Record("C", link) for link in connections]),
+    ]
 
 
 def document(records: Iterable[Record], version: int = 7400) -> bytes:
@@ -214,6 +231,8 @@ def _record(record: Record, offset: int, wide: bool) -> bytes:
 def _property(value: Any) -> bytes:
     if isinstance(value, Array):
         return _array(value)
+    if isinstance(value, Letter):
+        return b"C" + value.encode()
     if isinstance(value, bytes):
         return b"S" + struct.pack("<I", len(value)) + value
     if isinstance(value, np.int64):

@@ -111,12 +111,27 @@ REPEATED = {
 }
 
 
+def big_endian(version: int) -> bytes:
+    content = bytearray(clip())
+    content[22] = 1
+    content[23:27] = version.to_bytes(4, "big")
+    return bytes(content)
+
+
+def test_zero_bytes_that_became_spaces_are_named() -> None:
+    with pytest.raises(Unreadable, match="version control") as caught:
+        read_fbx(clip().replace(b"\0", b" "))
+    assert caught.value.places[0].location == "byte 20"
+
+
 @pytest.mark.parametrize(
     ("content", "word"),
     [
-        (b"; FBX 7.4.0 project file\n", "text"),
-        (clip(version=6100), "6.1"),
+        (b"; FBX 7.4.0 project file\n", "without a version"),
+        (b"; FBX 5.0.0 project file\nFBXHeaderExtension: {\nFBXVersion: 5000\n}", "5.0"),
+        (clip(version=5800), "5.8"),
         (clip(version=8000), "8.0"),
+        (big_endian(7400), "big-endian FBX 7.4"),
         (clip(header=[Record("OtherFlags", [], [Record("TCDefinition", [0])])]), "OtherFlags"),
         (clip().replace(b"EncryptionTypeI\0", b"EncryptionTypeI\1"), "encrypted"),
         (clip(changed(1, {"RotationActive": 1, "RotationOrder": 6})), "order"),

@@ -154,13 +154,51 @@ def test_the_error_names_the_key_frame_or_joint(name: str) -> None:
     assert place_of(npz(**ARRAYS | changes))[0] == location
 
 
-@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf, 1e12])
-def test_nan_and_large_numbers_are_refused_with_frame_and_joint(bad: float) -> None:
+@pytest.mark.parametrize("bad", [np.inf, -np.inf, 1e12])
+def test_infinite_and_large_numbers_are_refused_with_frame_and_joint(bad: float) -> None:
     positions = PERSON.positions.copy()
     positions[7, 3, 2] = bad
     location, message = place_of(npz(**ARRAYS | {"positions": positions}))
     assert location == "frame 7, joint 3"
     assert "positions[7, 3, 2]" in message
+
+
+def test_joints_hidden_for_a_short_time_are_filled_in() -> None:
+    positions = PERSON.positions.copy()
+    positions[7:9, 3, 2] = np.nan
+    arrays = ARRAYS | {"positions": positions}
+    recording = read_recording(npz(**arrays))
+    assert [c.code for c in recording.cautions] == ["gaps_filled"]
+    assert np.abs(recording.positions - PERSON.positions).max() < 0.01
+    assert np.isfinite(read_recording(npy(positions)).positions).all()
+
+
+def test_joints_hidden_for_a_long_time_are_named() -> None:
+    positions = PERSON.positions.copy()
+    positions[2:-1, 3] = np.nan
+    location, message = place_of(npz(**ARRAYS | {"positions": positions}))
+    assert location.startswith("frame 2, joint 3 (")
+    assert str(len(positions) - 3) in message
+    with pytest.raises(Unreadable, match="hidden for too long"):
+        read_recording(npy(np.full_like(positions, np.nan)))
+
+
+@pytest.mark.parametrize("key", ["arr_0", "posed_joints", "points"])
+def test_other_names_of_positions(key: str) -> None:
+    recording = read_recording(npz(**{key: PERSON.positions}))
+    assert np.array_equal(recording.positions, PERSON.positions)
+
+
+def test_poses_beside_markers_are_the_motion() -> None:
+    rng = np.random.default_rng(0)
+    arrays = {
+        "poses": rng.normal(scale=0.1, size=(20, 66)), "trans": np.zeros((20, 3)),
+        "markers": rng.normal(size=(20, 40, 3)), "labels": np.array([f"M{n}" for n in range(40)]),
+        "mocap_framerate": np.array(60.0),
+    }  # fmt: skip
+    assert len(read_recording(npz(**arrays)).skeleton) == 24
+    del arrays["poses"]
+    assert len(read_recording(npz(**arrays)).skeleton) == 40
 
 
 def test_the_error_for_another_archive_names_its_arrays() -> None:

@@ -1,4 +1,4 @@
-"""Selects the markers of a C3D file that are used.
+"""Selects the markers of a file that are used.
 
 These are the labeled markers of one subject, each label once, in the frames in which they are seen.
 """
@@ -7,17 +7,22 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from app.errors import Place, Unreadable
-from app.formats.c3d.points import Points
+from app.formats.common.names import without_common_prefix
+from app.formats.markers.tracks import Tracks
 from app.motion.roles.marker_names import is_marker, markers_by_place, subject_and_label
 from app.motion.skeleton.occlusion import Gap
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import BoolArray, FloatArray
 
+MIN_SENTINEL = 900.0
+"""The smallest number that stands for a marker that was not seen."""
+MIN_PREFIXED = 8
+"""The fewest labels whose common beginning counts as the name of a subject."""
 MAX_MARKERS_SHOWN = 8
 """The most markers that a caution or an error names."""
 
@@ -37,24 +42,24 @@ class Markers:
     cautions: tuple[Caution, ...] = ()
 
 
-def labeled_markers(points: Points) -> Markers:
+def labeled_markers(points: Tracks) -> Markers:
     """The markers of one subject that are seen, each label once.
 
     Frames at the start and at the end in which no marker is seen are left out. Raises Unreadable if
     no labeled marker is ever seen.
     """
-    split = [subject_and_label(label) for label in points.labels]
-    outputs = _model_outputs(points)
+    split = _split(points.labels)
+    points = replace(points, positions=_without_sentinels(points.positions))
     named = [
         index
         for index, (_, label) in enumerate(split)
-        if is_marker(label) and points.labels[index] not in outputs
+        if is_marker(label) and points.labels[index] not in points.outputs
     ]
     seen = np.isfinite(points.positions[..., 0])
     named = [index for index in named if seen[:, index].any()]
     if not named:
         message = "expected labeled markers, found none that is seen"
-        raise Unreadable(message, places=[Place("POINT:LABELS", message)])
+        raise Unreadable(message, places=[Place("labels", message)])
     subject, cautions = _main_subject([split[index] for index in named])
     mine = [index for index in named if split[index][0] == subject]
     points_read, more_cautions = _each_once([(split[index][1], index) for index in mine], seen)
@@ -63,6 +68,9 @@ def labeled_markers(points: Points) -> Markers:
     if last - first < len(seen):
         start, end = points.first_frame + first, points.first_frame + last - 1
         detail = f"no marker is seen before frame {start} or after frame {end}"
+        if points.frame_rate:
+            seconds = first / points.frame_rate
+            detail += f"; 0 s here is {seconds:.3f} s after the first frame of the file"
         more_cautions += (Caution("frames_trimmed", detail),)
     return Markers(
         tuple(split[index][1] for index in points_read),
@@ -72,11 +80,31 @@ def labeled_markers(points: Points) -> Markers:
     )
 
 
-def _model_outputs(points: Points) -> set[str]:
-    """Labels of results of gait models, which the file lists as angles, forces and others."""
-    groups = ("ANGLES", "FORCES", "MOMENTS", "POWERS", "SCALARS", "REACTIONS")
-    found = (points.parameters.get(f"POINT:{group}") for group in groups)
-    return {label for group in found if group is not None for label in group.texts}
+def _without_sentinels(positions: FloatArray) -> FloatArray:
+    """The positions with NaN where all three coordinates are one large number, such as 9999.99.
+
+    Programs write such numbers for markers that were not seen. No marker is there by chance.
+    """
+    x = positions[..., 0]
+    with np.errstate(invalid="ignore"):
+        same = (x == positions[..., 1]) & (x == positions[..., 2]) & (np.abs(x) >= MIN_SENTINEL)
+    if not same.any():
+        return positions
+    seen = positions.copy()
+    seen[same] = np.nan
+    return seen
+
+
+def _split(labels: Sequence[str]) -> list[tuple[str, str]]:
+    """The subject and the rest of each label. Qualisys separates them by `_`, others by `:`."""
+    split = [subject_and_label(label) for label in labels]
+    named = [label for subject, label in split if is_marker(label) and not subject]
+    short = dict(zip(named, without_common_prefix(named), strict=True))
+    if len(named) < MIN_PREFIXED or len(markers_by_place(named)) >= len(
+        markers_by_place(list(short.values()))
+    ):
+        return split
+    return [(subject, short.get(label, label)) for subject, label in split]
 
 
 def _main_subject(names: Sequence[tuple[str, str]]) -> tuple[str, tuple[Caution, ...]]:
@@ -128,21 +156,35 @@ def hidden_too_long(markers: Markers, gaps: Sequence[Gap]) -> Unreadable:
     return Unreadable(f"Markers are hidden for too long to be filled in: {detail}", places=places)
 
 
-def gap_cautions(markers: Markers, filled: int, gaps: Sequence[Gap]) -> tuple[Caution, ...]:
+def gap_cautions(markers: Markers, filled: int, hidden: Sequence[int]) -> tuple[Caution, ...]:
     """Cautions about gaps that were filled, and about markers that are left out for long gaps.
 
-    filled: the number of filled frames, summed over markers. gaps: the gaps that are too long.
+    filled: the number of filled frames, summed over markers. hidden: the markers that are left out.
     """
     cautions: tuple[Caution, ...] = ()
     if filled:
         share = 100 * filled / (len(markers.labels) * len(markers.positions))
         detail = f"markers hidden for short times were filled in: {share:.1f} % of their frames"
         cautions += (Caution("gaps_filled", detail),)
-    if gaps:
-        names = list(dict.fromkeys(markers.labels[gap.marker] for gap in gaps))
+    if hidden:
+        names = [markers.labels[marker] for marker in hidden]
         detail = f"markers hidden for long times are left out: {_listed(names)}"
         cautions += (Caution("markers_left_out", detail),)
     return cautions
+
+
+def stretch_caution(markers: Markers, stretch: slice, frame_rate: float) -> tuple[Caution, ...]:
+    """A caution if only a part of the frames is read. frame_rate: Hz."""
+    count = len(markers.positions)
+    if stretch.stop - stretch.start == count:
+        return ()
+    first, last = markers.first_frame + stretch.start, markers.first_frame + stretch.stop - 1
+    detail = (
+        f"markers that are needed are hidden for long times, so only frames {first} to {last} of"
+        f" {count} are read; 0 s here is {stretch.start / frame_rate:.3f} s after frame"
+        f" {markers.first_frame}"
+    )
+    return (Caution("frames_trimmed", detail),)
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -1,0 +1,1 @@
+"""JSON of 3-D keypoints: OpenPose, MMPose, EasyMocap and alike."""

@@ -1,0 +1,1 @@
+"""MVNX: the XML file of Xsens (Movella) MVN."""
