@@ -12,6 +12,14 @@ FilterJson = Annotated[
         "--filter", help='JSON, for example {"task": ["walk", "run"], "not_source": "my studio"}.'
     ),
 ]
+By = Annotated[
+    str | None,
+    typer.Option(
+        "--by",
+        help="Figures for each group of clips too: by person, task, license, source, folder, format"
+        " or meta.KEY.",
+    ),
+]
 PictureFormat = Annotated[
     str, typer.Option(help="Format of the pictures in a folder: svg, png or pdf.")
 ]

@@ -12,7 +12,7 @@ from app.cli.evaluate.drawing import Drawing
 from app.cli.evaluate.recognition_document import document
 from app.cli.evaluate.recognition_tables import print_tables
 from app.cli.evaluate.running import judging, parsed_filter
-from app.cli.options import FilterJson, PictureFormat
+from app.cli.options import By, FilterJson, PictureFormat
 from app.cli.output import AsJson, print_json
 from app.evaluate.recognition import pictures as recognition_pictures
 
@@ -43,6 +43,7 @@ def recognition(
     method: Methods = None,
     false_accept_rate: Rate = None,
     filter_json: FilterJson = None,
+    by: By = None,
     pictures_dir: Pictures = None,
     picture_format: PictureFormat = "svg",
     as_json: AsJson = False,
@@ -56,6 +57,7 @@ def recognition(
             filter,
             tuple(method or evaluate.RECOGNIZERS),
             false_accept_rate=false_accept_rate,
+            by=by,
             progress=progress,
         )
     if as_json:

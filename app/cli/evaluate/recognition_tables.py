@@ -45,6 +45,7 @@ def print_tables(found: RecognitionEvaluation) -> None:
 def _print_recognized(found: RecognitionEvaluation) -> None:
     if LeftOut.TAKE in found.held_out:
         _print_shares("A fifth of the takes left out in turn", found.held_out[LeftOut.TAKE])
+        _print_groups(found.held_out[LeftOut.TAKE])
     for takes, held in found.takes.items():
         _print_shares(f"{_counted(takes, 'take')} a cell learned, drawn {DRAWS} times", held)
 
@@ -61,6 +62,17 @@ def _print_shares(title: str, held: HeldOut) -> None:
     person, task, both = held.chance
     rows.append(["chance", task, person, both, held.methods[0].recognized.both.of])
     print_table(["method", "task", "person", "both", "clips"], rows)
+
+
+def _print_groups(held: HeldOut) -> None:
+    rows: list[list[object]] = [
+        [group, judged.method, *_values(one), one.both.of]
+        for judged in held.methods
+        for group, one in judged.by_group.items()
+    ]
+    if rows:
+        typer.echo("\nThe same for the clips of each group:\n")
+        print_table(["group", "method", "task", "person", "both", "clips"], rows)
 
 
 def _values(found: Recognized) -> list[object]:
