@@ -178,7 +178,7 @@ def _print_hits(hits: Hits, as_json: bool, *, by_words: bool, with_times: bool) 
                 hit.rank,
                 hit.score,
                 *((hit.start, hit.end) if with_times else ()),
-                hit.clip.name,
+                hit.clip.full_name,
                 hit.clip.person,
                 hit.clip.task,
                 hit.clip.id,

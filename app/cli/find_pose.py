@@ -75,7 +75,7 @@ def search_pose(
         return
     columns = ("rank", "score", "time", "name", "person", "task", "id")
     rows = [
-        (h.rank, h.score, h.time, h.clip.name, h.clip.person, h.clip.task, h.clip.id)
+        (h.rank, h.score, h.time, h.clip.full_name, h.clip.person, h.clip.task, h.clip.id)
         for h in hits.items
     ]
     print_table(columns, rows)

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from app.cli.output import AsJson, print_json, print_table, progress_bar
+from app.cli.output import AsJson, print_json, progress_bar
 from app.cli.settings import open_library
 
 if TYPE_CHECKING:
+    from app.services.imports.options import ImportOptions
     from app.services.library.library import Library
     from app.store.jobs.record import JobRecord
 
@@ -27,9 +28,40 @@ RECENT_JOBS = 10
 """The newest fits among which an open one is searched."""
 
 
+Person = Annotated[str | None, typer.Option(help="The person in files that name none.")]
+Task = Annotated[str | None, typer.Option(help="The task in files that name none.")]
+Words = Annotated[
+    str | None, typer.Option(help="Words of files that name none, separated by spaces.")
+]
+License = Annotated[str | None, typer.Option(help="The license of files that name none.")]
+Source = Annotated[str | None, typer.Option(help="The source of files that name none.")]
+Meta = Annotated[
+    list[str] | None,
+    typer.Option("--meta", help="Metadata as KEY=VALUE, as condition=tired; may be repeated."),
+]
+Labels = Annotated[
+    str | None,
+    typer.Option(
+        help="Labels from paths: a pattern like {person}/{task}/{take}.bvh. A name that is no label"
+        " becomes metadata; * is any name, ** any folders."
+    ),
+]
+Overwrite = Annotated[
+    bool, typer.Option("--overwrite", help="Replace labels that somebody edited since, too.")
+]
+
+
 def import_clips(
     context: typer.Context,
     path: Annotated[Path, typer.Argument(help="A folder, a ZIP, or a motion file.")],
+    person: Person = None,
+    task: Task = None,
+    words: Words = None,
+    license: License = None,
+    source: Source = None,
+    meta: Meta = None,
+    labels: Labels = None,
+    overwrite: Overwrite = False,
     wait: Annotated[
         bool, typer.Option(help="Analyze now; with --no-wait, a worker analyzes the clips later.")
     ] = True,
@@ -37,34 +69,58 @@ def import_clips(
 ) -> None:
     """Import a folder (with or without manifest.csv), a ZIP or a file.
 
-    Files that the library already has are skipped. So you can repeat an interrupted import.
+    Labels come from a row of manifest.csv, else from --labels, else from --person and the others.
+    Files that the library already has get changed labels, except those that somebody edited since.
+    So you can correct a manifest and import it again, or repeat an interrupted import. The exit
+    code is 1 if files failed, and 2 if no file could be imported.
     """
-    from app.store.jobs.record import JobState
+    from app.cli import import_report
+    from app.services.imports.options import ImportOptions
 
+    given = {"person": person, "task": task, "words": words, "license": license, "source": source}
+    values: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
+    if meta:
+        values["metadata"] = metadata_of(meta)
     with open_library(context) as lib:
-        job = register(lib, path)
+        job = register(lib, path, ImportOptions(values, labels, overwrite))
         if wait:
             with working(lib):
                 job = follow(lib, job.id, "analyzing")
                 fit_if_due(lib)
         if as_json:
-            print_json(_document(lib, job))
-        elif wait:
-            show_import(lib, job)
+            print_json(import_report.document(lib, job))
+        elif wait or not job.is_open:
+            import_report.show(lib, job)
         else:
             typer.echo(f"{job.id}: registered; a worker analyzes the clips.")
-    if job.state in (JobState.FAILED, JobState.CANCELED):
-        raise typer.Exit(FAILURE)
+    if code := import_report.exit_code(job):
+        raise typer.Exit(code)
 
 
-def register(lib: Library, path: Path) -> JobRecord:
+def metadata_of(pairs: Sequence[str]) -> dict[str, Any]:
+    """The metadata in texts like KEY=VALUE; an empty value is None. Raises BadParameter."""
+    from app.store.clips.metadata_values import from_cell
+
+    metadata: dict[str, Any] = {}
+    for pair in pairs:
+        key, equals, value = pair.partition("=")
+        if not equals or not key.strip():
+            raise typer.BadParameter(f"{pair!r}: write KEY=VALUE", param_hint="--meta")
+        metadata[key.strip()] = from_cell(value.strip()) if value.strip() else None
+    return metadata
+
+
+def register(lib: Library, path: Path, options: ImportOptions | None = None) -> JobRecord:
     """Import all files under `path` with a progress bar; returns the job that analyzes them."""
     from app.services.imports import imports
 
     with progress_bar() as bar:
         task = bar.add_task("registering", total=None)
         job = imports.import_path(
-            lib, path, lambda done, total, _: bar.update(task, completed=done, total=total)
+            lib,
+            path,
+            lambda done, total, _: bar.update(task, completed=done, total=total),
+            options,
         )
         bar.update(task, completed=1, total=1)  # absent files of a manifest are not counted
         return job
@@ -119,55 +175,3 @@ def _open_fit(lib: Library) -> JobRecord | None:
 
     recent = jobs.list_jobs(lib, kind=JobKind.FIT, limit=RECENT_JOBS).items
     return next((job for job in recent if job.is_open), None)
-
-
-def _document(lib: Library, job: JobRecord) -> dict[str, Any]:
-    """The job as in the API, but its result lists all recorded files."""
-    from app.api.schemas.jobs import Job, JobFile
-    from app.services.clips import jobs
-
-    document: dict[str, Any] = Job.model_validate(job).model_dump(mode="json")
-    if document["result"] is not None:
-        files = [
-            JobFile.model_validate(file).model_dump(mode="json")
-            for file in jobs.all_files(lib, job.id)
-        ]
-        left_out = max(document["result"]["total"] - len(files), 0)
-        document["result"] |= {"files": files, "files_left_out": left_out}
-    return document
-
-
-def show_import(lib: Library, job: JobRecord) -> None:
-    """Print the numbers of files by result, and each failure with its reason."""
-    result = job.result or {}
-    if result:
-        present = result["ready"] + result["exists"]
-        typer.echo(
-            f"{present} of {result['total']} files are in the library ({result['ready']} new)."
-        )
-        _show_failures(lib, job.id, result["absent"])
-    if job.error:
-        typer.echo(f"kinedex: {job.error['detail']}", err=True)
-
-
-def _show_failures(lib: Library, job_id: str, absent: int) -> None:
-    from app.services.clips import jobs
-    from app.services.imports.plan import MAX_ABSENT_LISTED
-    from app.store.jobs.import_files import FileOutcome
-
-    failures = [
-        (file.path, _reason(file.error))
-        for outcome in (FileOutcome.FAILED, FileOutcome.ABSENT)
-        for file in jobs.all_files(lib, job_id, outcome)
-        if file.error is not None
-    ]
-    if failures:
-        print_table(("failed", "reason"), failures)
-    if absent > MAX_ABSENT_LISTED:
-        typer.echo(f"A manifest names {absent - MAX_ABSENT_LISTED} more files that do not exist.")
-
-
-def _reason(problem: dict[str, Any]) -> str:
-    places = [f"{place['location']}: {place['message']}" for place in problem["errors"]]
-    # the detail of a file reader is often the same text as its only place
-    return " ".join([problem["detail"], *(place for place in places if place != problem["detail"])])

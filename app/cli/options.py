@@ -15,6 +15,14 @@ FilterJson = Annotated[
 IncludeSelf = Annotated[
     bool, typer.Option("--include-self", help="Let the query itself be a hit, if it is stored.")
 ]
+By = Annotated[
+    str | None,
+    typer.Option(
+        "--by",
+        help="Figures for each group of clips too: by person, task, license, source, folder, format"
+        " or meta.KEY.",
+    ),
+]
 PictureFormat = Annotated[
     str, typer.Option(help="Format of the pictures in a folder: svg, png or pdf.")
 ]

@@ -69,7 +69,7 @@ def _print_quality(synthesized: Synthesized, path: Path) -> None:
     rows: list[tuple[str, object]] = [
         ("file", f"{path}: {len(synthesized.bvh)} bytes, {duration:.2f} s"),
         ("made from", _donors(synthesized)),
-        ("nearest real clip", quality.nearest.name if quality.nearest else "deleted"),
+        ("nearest real clip", quality.nearest.full_name if quality.nearest else "deleted"),
         ("its labels", f"{quality.nearest_person}, {quality.nearest_task}"),
         ("expected accuracy", _expected_accuracy(synthesized)),
         ("speed of sliding feet", f"{quality.skate:.2f} m/s{_real_skate(quality.real_skate)}"),

@@ -1,4 +1,4 @@
-"""Checks of all values that clients send about a clip: labels, hints, keyposes, limits.
+"""Checks of all values that clients send about a clip: labels, hints, metadata, keyposes, limits.
 
 The same rules hold for a form, a JSON body, a manifest and the command line. Each function returns
 the value in its normal form, and raises BadField, which names the field, for a bad value.
@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -20,7 +21,8 @@ from app.motion.canonical.up_axis import UP_AXES
 from app.motion.roles.joint_roles import JointRole
 from app.motion.roles.roles import MAX_JOINTS_OF_MIDDLE
 from app.motion.skeleton.recording import FRAME_RATES
-from app.store.clips.record import AnalysisHints, ClipChanges, ClipLabels
+from app.store.clips.metadata_values import MetadataValue, tidy_number
+from app.store.clips.record import META, AnalysisHints, ClipChanges, ClipLabels
 
 MAX_TEXT = 300
 """Characters in a name or label."""
@@ -33,6 +35,13 @@ MAX_WORDS = 100
 """Words on one clip."""
 MAX_LIMIT = 1000
 """Hits of one page."""
+MAX_META_KEYS = 50
+"""Keys of the metadata of one clip."""
+MAX_META_KEY = 60
+"""Characters of a key of the metadata."""
+NOT_IN_KEYS = ".={}"
+"""Characters that no key has: a filter uses the dot, a command the equals sign, and a pattern of
+paths the braces."""
 MAX_KEYPOSES = 10_000
 """Largest number of annotated keyposes of one clip: three hours of dancing."""
 TEMPI = (20.0, 400.0)
@@ -84,6 +93,38 @@ def queried_words(value: Iterable[str]) -> tuple[str, ...]:
     if sum(len(one.split()) for one in texts) > MAX_WORDS:
         raise bad_field("words", f"must not be more than {MAX_WORDS}")
     return texts
+
+
+def metadata(value: Mapping[str, Any] | None) -> dict[str, MetadataValue | None] | None:
+    """Metadata: checked keys, each with a string, a number, a boolean or None (no value)."""
+    if value is None:
+        return None
+    if not isinstance(value, Mapping):
+        raise bad_field("metadata", "must be an object: values by key")
+    if len(value) > MAX_META_KEYS:
+        raise bad_field("metadata", f"must not have more than {MAX_META_KEYS} keys")
+    return {metadata_key(key): _metadata_value(key, one) for key, one in value.items()}
+
+
+def metadata_key(key: str) -> str:
+    """A key of the metadata in Unicode's NFC form, without surrounding spaces."""
+    tidy = text("metadata", key) or ""
+    if not tidy or len(tidy) > MAX_META_KEY:
+        raise bad_field("metadata", f"a key must have 1 to {MAX_META_KEY} characters: {tidy!r}")
+    if any(c in tidy for c in NOT_IN_KEYS):
+        raise bad_field(META + tidy, f"a key must not hold any of {' '.join(NOT_IN_KEYS)}")
+    if tidy.casefold() in RESERVED_KEYS:
+        raise bad_field(META + tidy, "is the name of a field of a clip, so it cannot be a key")
+    return tidy
+
+
+def _metadata_value(key: str, value: Any) -> MetadataValue | None:
+    if value is None or isinstance(value, bool):
+        return value
+    if isinstance(value, int | float):
+        number = _number(META + key, value)
+        return None if number is None else tidy_number(number)
+    return text(META + key, value)
 
 
 def frame_rate(value: float | str | None) -> float | None:
@@ -193,6 +234,18 @@ def _number(field: str, value: float | str | None) -> float | None:
     return number
 
 
+def path(value: str | None) -> str | None:
+    """The path of a file relative to its import, with /, without empty parts, `.` and `..`."""
+    if value is None:
+        return None
+    parts = unicodedata.normalize("NFC", value).replace("\\", "/").split("/")
+    printable = ("".join(c for c in part if c.isprintable()).strip() for part in parts)
+    tidy = "/".join(part for part in printable if part not in ("", ".", ".."))
+    if len(tidy) > MAX_PATH:
+        raise bad_field("path", f"must not be longer than {MAX_PATH} characters")
+    return tidy or None
+
+
 def file_name(value: str) -> str:
     """The last part of a client's file name, safe to show and to offer for download."""
     last = value.replace("\\", "/").rstrip("/").rpartition("/")[2]
@@ -221,6 +274,7 @@ LABELS: Mapping[str, Check] = {
     "words": lambda value: words(value) or (),
     "license": partial(text, "license"),
     "source": partial(text, "source"),
+    "metadata": metadata,
 }
 """The check of each field of `ClipLabels`. Clients use the same names."""
 
@@ -239,6 +293,21 @@ HINTS: Mapping[str, Check] = {
 
 _STORED_NAMES = {UNIT: "metres_per_unit"}
 """The fields of `AnalysisHints` for which clients use another name."""
+_CLIENT_NAMES = {stored: name for name, stored in _STORED_NAMES.items()}
+
+RESERVED_KEYS = frozenset({*LABELS, *HINTS, "path", "fps", "keyposes", "audio", "word", "folder"})
+"""Names that no key of the metadata has, in upper or lower case: a column of a manifest with such a
+name is the field itself."""
+
+
+def stored_name(name: str) -> str:
+    """The name in the store of a label or hint of clients."""
+    return _STORED_NAMES.get(name, name)
+
+
+def client_name(stored: str) -> str:
+    """The name that clients use for a stored label or hint."""
+    return _CLIENT_NAMES.get(stored, stored)
 
 
 def checked(values: Mapping[str, Any]) -> ClipChanges:
@@ -252,18 +321,32 @@ def checked(values: Mapping[str, Any]) -> ClipChanges:
         check = LABELS.get(field) or HINTS.get(field)
         if check is None:
             raise bad_field(field, "is no label or hint of a clip")
-        changes[_STORED_NAMES.get(field, field)] = check(value)
+        changes[stored_name(field)] = check(value)
     return changes
 
 
-def labels_and_hints(
-    values: Mapping[str, Any], default_name: str
-) -> tuple[ClipLabels, AnalysisHints]:
-    """The labels and hints of a new clip, checked by `checked`.
+@dataclass(frozen=True, slots=True)
+class SentValues:
+    """The labels and hints that came with a file; sent: their names, as in `NewClip.sent`."""
+
+    labels: ClipLabels
+    hints: AnalysisHints
+    sent: frozenset[str]
+
+
+def sent_values(values: Mapping[str, Any], default_name: str) -> SentValues:
+    """The labels and hints that come with a file, checked by `checked`.
 
     default_name: the clip's name if the values have none. Raises BadField.
     """
     labels = checked({name: value for name, value in values.items() if name not in HINTS})
     hints = checked({name: value for name, value in values.items() if name in HINTS})
-    name = labels.get("name") or default_name
-    return ClipLabels(**{**labels, "name": name}), AnalysisHints(**hints)
+    keys: dict[str, MetadataValue | None] = labels.get("metadata") or {}
+    names = {*labels, *hints} - {"metadata"} - ({"name"} if not labels.get("name") else set())
+    labels = {**labels, "name": labels.get("name") or default_name}
+    labels["metadata"] = {key: value for key, value in keys.items() if value is not None}
+    return SentValues(
+        ClipLabels(**labels),
+        AnalysisHints(**hints),
+        frozenset(names | {META + key for key in keys}),
+    )

@@ -18,7 +18,7 @@ CLIP_FIELDS = {
     *("id", "name", "state", "format", "sha256", "person", "task", "words", "license"),
     *("source", "frames", "frame_rate", "declared_frame_rate", "duration", "joints"),
     *("roles", "missing_roles", "warnings", "created_at", "error"),
-    *("has_audio", "audio_offset", "reanalysis"),
+    *("has_audio", "audio_offset", "reanalysis", "path", "metadata"),
 }
 JOB_FIELDS = {
     *("id", "kind", "state", "progress", "detail"),
@@ -34,7 +34,7 @@ def test_an_upload_is_acknowledged_then_ready(demo_service: Live, take: DemoClip
     answer = demo_service.upload(take, license="CC0-1.0", source="test")
     assert answer.status_code == 202
     reply = answer.json()
-    assert set(reply) == {"clip", "job"}
+    assert set(reply) == {"clip", "job", "differences"}
     assert set(reply["clip"]) == CLIP_FIELDS
     assert set(reply["job"]) == JOB_FIELDS
     assert reply["clip"]["state"] == "queued"

@@ -62,11 +62,16 @@ def test_the_files_of_a_large_import_are_paged(demo_service: Live) -> None:
         counts = {k: v for k, v in job["result"].items() if k != "files"}
         assert counts == {
             "total": 550,
-            "ready": 0,
-            "exists": 0,
+            "new": 0,
+            "updated": 0,
+            "unchanged": 0,
+            "conflicting": 0,
             "failed": 250,
+            "skipped": 0,
             "deleted": 0,
             "absent": 300,
+            "unmatched": 0,
+            "warnings": {},
             "files_left_out": 450,
         }
         assert len(job["result"]["files"]) == 100

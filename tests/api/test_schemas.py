@@ -32,7 +32,10 @@ CLIP = ClipRecord(
     words=("walk", "slow"),
     license="CC0",
     source="lab",
+    metadata={"condition": "tired", "age": 30},
     id="clip_1",
+    path="lab/anna/walk.bvh",
+    imported={"person": "secret"},
     state=ClipState.READY,
     format="bvh",
     sha256="a" * 64,
@@ -95,7 +98,7 @@ def test_answers_with_other_answers_inside_are_built_at_once() -> None:
     created = ClipCreated.model_validate(Created(CLIP, JOB, is_new=True))
     assert created.clip == Clip.model_validate(CLIP)
     assert created.job == Job.model_validate(JOB)
-    assert set(created.model_dump()) == {"clip", "job"}
+    assert set(created.model_dump()) == {"clip", "job", "differences"}
     page = ClipList.model_validate(Page((CLIP,), "more"))
     assert (page.items, page.next) == ([created.clip], "more")
 
@@ -105,8 +108,9 @@ def test_every_label_and_hint_has_its_check_its_form_field_and_its_column() -> N
     hints = {field.name for field in dataclasses.fields(AnalysisHints)}
     assert fields.LABELS.keys() == labels
     assert {"metres_per_unit" if one == "unit" else one for one in fields.HINTS} == hints
-    assert ClipForm.model_fields.keys() == fields.LABELS.keys() | fields.HINTS.keys()
+    of_a_clip = ClipForm.model_fields.keys() - {"path", "on_conflict"}
+    assert of_a_clip == fields.LABELS.keys() | fields.HINTS.keys()
     assert ClipPatch.model_fields.keys() == set(PATCHABLE)
     assert labels < Clip.model_fields.keys()
-    not_in_manifests = {"roles", "stack"}
-    assert {*COLUMNS} == (ClipForm.model_fields.keys() - not_in_manifests) | {"fps", "keyposes"}
+    not_in_manifests = {"roles", "stack", "metadata"}
+    assert {*COLUMNS} == (of_a_clip - not_in_manifests) | {"fps", "keyposes"}

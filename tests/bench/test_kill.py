@@ -119,7 +119,7 @@ def test_every_clip_ends_exactly_once(killed: tuple[Tally, Path]) -> None:
     assert {row["path"]: counts[row["path"]] for row in manifest()} == {
         row["path"]: 1 for row in manifest()
     }
-    assert outcomes.keys() <= {"ready", "failed", "exists"}
+    assert outcomes.keys() <= {"ready", "failed", "unchanged", "skipped"}
     assert DIED not in failures
     with closing(_database(data)) as database:
         _check_clips(database, [file["clip_id"] for file in files if file["clip_id"]])

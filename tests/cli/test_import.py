@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import zipfile
 from pathlib import Path
 
@@ -13,10 +14,11 @@ from tests.cli.conftest import ABSENT, BAD, Ended, Kinedex
 def test_good_files_are_imported_and_each_failure_is_printed(
     imported: Ended, clips: list[DemoClip], folder: Path
 ) -> None:
-    assert imported.code == 0
+    assert imported.code == 1
     printed = " ".join(imported.out.split())
     count = len(clips)
-    assert f"{count} of {count + 2} files are in the library ({count} new)." in printed
+    counts = f"{count + 2} files: {count} new, 0 updated, 0 unchanged, 1 failed, 1 absent."
+    assert counts in printed
     assert f"{BAD} " in printed
     assert f"{ABSENT} The manifest names a file that does not exist." in printed
     assert "Traceback" not in imported.err
@@ -31,12 +33,14 @@ def test_the_reason_names_the_line_once(imported: Ended, clips: list[DemoClip]) 
 def test_the_same_folder_again_adds_nothing(
     kinedex: Kinedex, folder: Path, clips: list[DemoClip]
 ) -> None:
-    job = kinedex("import", str(folder), "--json").json()
+    ended = kinedex("import", str(folder), "--json")
+    assert ended.code == 1
+    job = json.loads(ended.out)
     assert Job.model_validate(job).model_dump(mode="json") == job
     result = job["result"]
-    counts = [result[name] for name in ("ready", "exists", "failed", "absent")]
+    counts = [result[name] for name in ("new", "unchanged", "failed", "absent")]
     assert counts == [0, len(clips), 1, 1]
-    outcomes = {f["path"]: f["outcome"] for f in result["files"] if f["outcome"] != "exists"}
+    outcomes = {f["path"]: f["outcome"] for f in result["files"] if f["outcome"] != "unchanged"}
     assert outcomes == {BAD: "failed", ABSENT: "absent"}
 
 

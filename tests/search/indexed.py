@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
-from app.store.clips.filter import ClipFilter
+from app.store.clips.filter import ClipFilter, MetadataCondition
 from app.store.clips.index_feed import IndexedClip
 
 PERSONS = ("ada", "bruno", "chika", None)
@@ -30,7 +30,20 @@ LABELS = st.fixed_dictionaries(
         "source": st.sampled_from(("studio", "field")),
         "duration": st.sampled_from((0.0, 1.0, 2.5)),
         "words": st.frozensets(st.sampled_from(WORDS), max_size=3),
+        "folder": st.sampled_from((None, "", "cmu", "cmu/02", "cmu 2", "CMU/02")),
+        "metadata": st.dictionaries(
+            st.sampled_from(("age", "fresh")), st.sampled_from((True, 30, 41.5, "30", "old"))
+        ).map(lambda values: tuple(values.items())),
     }
+)
+
+CONDITIONS = st.builds(
+    MetadataCondition,
+    key=st.sampled_from(("age", "fresh", "unheard")),
+    texts=st.sampled_from(((), ("30",), ("old", "true"))),
+    minimum=st.sampled_from((None, 30.0, 40.0)),
+    maximum=st.sampled_from((None, 30.0, 50.0)),
+    is_negated=st.booleans(),
 )
 
 FILTERS = st.builds(
@@ -42,6 +55,9 @@ FILTERS = st.builds(
     word=st.lists(st.sampled_from((*WORDS, "unheard")), max_size=2).map(tuple),
     min_duration=st.sampled_from((None, 1.0, 2.0)),
     max_duration=st.sampled_from((None, 1.0, 0.5)),
+    folder=st.lists(st.sampled_from(("cmu", "cmu/02", "none")), max_size=2).map(tuple),
+    not_folder=st.lists(st.sampled_from(("cmu", "cmu/02", "none")), max_size=1).map(tuple),
+    metadata=st.lists(CONDITIONS, max_size=2).map(tuple),
 )
 
 
@@ -53,6 +69,34 @@ def passes(clip: IndexedClip, clip_filter: ClipFilter) -> bool:
             return False
     if clip_filter.word and not any(word in clip.words for word in clip_filter.word):
         return False
+    if clip_filter.folder and not _is_in(clip.folder, clip_filter.folder):
+        return False
+    if clip_filter.not_folder and _is_in(clip.folder, clip_filter.not_folder):
+        return False
+    if not all(_meets(clip, condition) for condition in clip_filter.metadata):
+        return False
     if clip_filter.min_duration is not None and clip.duration < clip_filter.min_duration:
         return False
     return clip_filter.max_duration is None or clip.duration <= clip_filter.max_duration
+
+
+def _is_in(folder: str | None, parents: tuple[str, ...]) -> bool:
+    parts = None if folder is None else folder.split("/")
+    return parts is not None and any(
+        parts[: len(parent.split("/"))] == parent.split("/") for parent in parents
+    )
+
+
+def _meets(clip: IndexedClip, condition: MetadataCondition) -> bool:
+    values = dict(clip.metadata)
+    if condition.key not in values:
+        return condition.is_negated
+    value = values[condition.key]
+    text = {True: "true", 30: "30", 41.5: "41.5"}.get(value, value)
+    is_number = not isinstance(value, bool | str)
+    is_met = not condition.texts or text in condition.texts
+    if condition.minimum is not None:
+        is_met &= is_number and value >= condition.minimum
+    if condition.maximum is not None:
+        is_met &= is_number and value <= condition.maximum
+    return is_met is not condition.is_negated

@@ -19,6 +19,7 @@ from app.api.schemas.clips import Clip, ClipCreated, ClipForm, ClipList, ClipPat
 from app.errors import ClipNotFound
 from app.services.clips import catalogue as clips
 from app.services.clips.catalogue import StoredFile
+from app.services.clips.merging import OnConflict
 from app.services.clips.recordings import NewRecording
 
 router = APIRouter(prefix="/v1/clips", tags=["clips"])
@@ -41,7 +42,7 @@ async def _form(request: Request) -> tuple[ClipForm, dict[str, UploadFile]]:
     dependencies=[writes, Depends(_form), changes],  # takes a slot after the form has arrived
     responses={
         200: {"model": ClipCreated, "description": "The same bytes were stored before."},
-        **refusals(400, 413, 415, 503, 507),
+        **refusals(400, 409, 413, 415, 503, 507),
     },
     openapi_extra=body(form=ClipForm, files=FILES, needed=["file"]),
 )
@@ -50,16 +51,22 @@ def create_clip(
     sent: Annotated[tuple[ClipForm, dict[str, UploadFile]], Depends(_form)],
     response: Response,
 ) -> ClipCreated:
-    """Store a clip. A worker analyzes it: then it is `ready`, or `failed` with an `error`."""
+    """Store a clip. A worker analyzes it: then it is `ready`, or `failed` with an `error`.
+
+    If the library has the same bytes already, the answer is their clip. `differences` lists the
+    labels and hints that came with other values, and `on_conflict` says what happens to them.
+    """
     form, uploads = sent
     upload = required(uploads, "file")
     created = clips.create_clip(
         lib,
         upload.file,
         upload.filename or "clip",
-        form.model_dump(exclude_none=True),
+        form.labels(),
         skeleton=file_of(uploads, "skeleton"),
         recording=_recording(uploads),
+        path=form.path,
+        on_conflict=OnConflict(form.on_conflict),
     )
     if created.job is None:
         response.status_code = 200
@@ -73,7 +80,11 @@ def _recording(uploads: dict[str, UploadFile]) -> NewRecording | None:
 
 @router.get("", dependencies=[reads, quick], responses=refusals())
 def list_clips(lib: Lib, query: Annotated[ClipQuery, Query()]) -> ClipList:
-    """List the clips that pass every filter. Repeat a label parameter to accept several values."""
+    """List the clips that pass every filter. Repeat a label parameter to accept several values.
+
+    `meta.KEY=VALUE` filters by metadata, `not_meta.KEY=VALUE` leaves clips with that value out, and
+    `meta.KEY.min=30`, `meta.KEY.max=40` filter by a number; `GET /v1/metadata` lists the keys.
+    """
     page = clips.list_clips(lib, query.as_filter(), query.sort, query.limit, query.cursor)
     return ClipList.model_validate(page)
 

@@ -20,9 +20,9 @@ router = APIRouter(prefix="/v1/imports", tags=["clips"])
 FILES = {"archive": "A ZIP of motion files; it may hold `manifest.csv`."}
 
 
-async def _form(request: Request) -> UploadFile:
-    _, uploads = await read_form(request, ImportForm, FILES)
-    return required(uploads, "archive")
+async def _form(request: Request) -> tuple[ImportForm, UploadFile]:
+    form, uploads = await read_form(request, ImportForm, FILES)
+    return form, required(uploads, "archive")
 
 
 @router.post(
@@ -32,10 +32,16 @@ async def _form(request: Request) -> UploadFile:
     responses=refusals(400, 413, 415, 503, 507),
     openapi_extra=body(form=ImportForm, files=FILES, needed=["archive"]),
 )
-def start_import(lib: Lib, archive: Annotated[UploadFile, Depends(_form)]) -> JobStarted:
+def start_import(
+    lib: Lib, sent: Annotated[tuple[ImportForm, UploadFile], Depends(_form)]
+) -> JobStarted:
     """Store every motion file of a ZIP.
 
-    `job.result` counts the outcomes. `GET /v1/jobs/{id}/files` lists the outcome of each file.
+    A file that the library has already gets the labels that come now, except those that somebody
+    edited since. `job.result` counts the outcomes. `GET /v1/jobs/{id}/files` lists the outcome of
+    each file.
     """
-    job = imports.start_import(lib, archive.file, archive.filename or "archive.zip")
+    form, archive = sent
+    filename = archive.filename or "archive.zip"
+    job = imports.start_import(lib, archive.file, filename, form.options())
     return JobStarted(job=Job.model_validate(job))

@@ -1,17 +1,28 @@
-"""Persons, tasks and words of the library, with counts."""
+"""Persons, tasks, words, metadata and folders of the library, with counts."""
 
 from __future__ import annotations
 
 from typing import Annotated
 
 from fastapi import APIRouter, Path, Query
+from fastapi.responses import StreamingResponse
 from starlette.convertors import PathConvertor, register_url_convertor
 
 from app.api.deps import Lib, reads, writes
 from app.api.guard.admission import changes, quick
 from app.api.openapi import refusals
-from app.api.schemas.labels import LabelPage, NamedCounts, WordListQuery
-from app.services.clips import labels, persons
+from app.api.schemas.filters import Filter
+from app.api.schemas.labels import (
+    FolderList,
+    FolderQuery,
+    LabelPage,
+    MetadataKeys,
+    NamedCounts,
+    WordListQuery,
+)
+from app.search.index.filters import parse_filter
+from app.services.clips import discovery, labels, persons
+from app.services.clips.manifest_export import manifest
 from app.services.recognition import suggestions
 from app.store.clips.labels import LabelKind
 
@@ -48,11 +59,13 @@ def list_persons(lib: Lib, query: Annotated[LabelPage, Query()]) -> NamedCounts:
     responses=refusals(404),
 )
 def forget_person(lib: Lib, name: Annotated[str, Path(max_length=300)]) -> None:
-    """Remove a person's label from all clips, and delete every model that holds the person.
+    """Remove a person from all labels, and delete every model that holds the person.
 
-    The models are fitted again in the background. Until then recognition, synthesis and
-    `metric-person` answer 409 `model_not_fitted` with `Retry-After`. The clips and the names of
-    their files stay.
+    The person's name also leaves the names, paths, sources, words and metadata of clips, and the
+    lists of imported files: `anna_walk.bvh` becomes `anonymous_walk.bvh`. In clips of others, a
+    name without a letter leaves only metadata that are nothing but the name. The contents of the
+    stored files stay. The models are fitted again in the background. Until then recognition,
+    synthesis and `metric-person` answer 409 `model_not_fitted` with `Retry-After`.
     """
     persons.forget_person(lib, name)
 
@@ -72,3 +85,37 @@ def list_words(lib: Lib, query: Annotated[WordListQuery, Query()]) -> NamedCount
         return NamedCounts.model_validate(page)
     found = suggestions.complete(lib, query.q, query.limit or DEFAULT_COMPLETIONS)
     return NamedCounts.model_validate({"items": found})
+
+
+@router.get("/metadata", dependencies=[quick])
+def list_metadata(lib: Lib, query: Annotated[LabelPage, Query()]) -> MetadataKeys:
+    """The keys of the metadata of clips, with the kinds and the most frequent values of each."""
+    return MetadataKeys.model_validate(discovery.metadata(lib, query.limit, query.cursor))
+
+
+@router.get("/folders", dependencies=[quick])
+def list_folders(lib: Lib, query: Annotated[FolderQuery, Query()]) -> FolderList:
+    """The folders directly in a folder, with the number of clips in and below each.
+
+    A clip that was imported from a folder or a ZIP has the path that its file had there.
+    """
+    found = discovery.folders(lib, query.folder, query.limit, query.cursor)
+    return FolderList.model_validate(found)
+
+
+@router.get(
+    "/manifest.csv",
+    dependencies=[quick],
+    response_class=StreamingResponse,
+    responses={
+        200: {"content": {"text/csv": {}}, "description": "A table with a row for each clip."}
+    },
+)
+def get_manifest(lib: Lib, query: Annotated[Filter, Query()]) -> StreamingResponse:
+    """The labels, hints and metadata of clips, as a manifest that an import reads again."""
+    filter = parse_filter(query.given())
+    return StreamingResponse(
+        manifest(lib, filter),
+        media_type="text/csv; charset=utf-8",
+        headers={"Content-Disposition": 'attachment; filename="manifest.csv"'},
+    )

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from typing import Annotated, Any, TypeVar
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    StrictBool,
+    StrictFloat,
+    StrictInt,
+)
 
 from app.motion.roles.joint_roles import JointRole
 from app.motion.roles.roles import MAX_JOINTS_OF_MIDDLE
@@ -58,6 +67,18 @@ AnyOf = Annotated[
 
 Label = Annotated[str, Field(max_length=fields.MAX_TEXT)]
 """A name or label of a clip. The service checks further rules (`app.services.fields`)."""
+
+Path = Annotated[str, Field(max_length=fields.MAX_PATH), AfterValidator(_without_control)]
+"""A path of a file or folder, with / between its parts."""
+
+_MetadataKey = Annotated[str, Field(min_length=1, max_length=fields.MAX_META_KEY)]
+Metadata = dict[str, bool | int | float | str]
+"""Metadata of a clip as it is shown."""
+MetadataChanges = Annotated[
+    dict[_MetadataKey, StrictBool | StrictInt | StrictFloat | Label | None],
+    Field(max_length=fields.MAX_META_KEYS, examples=[{"condition": "fatigued", "age": 30}]),
+]
+"""Metadata that a client sends. The service checks further rules (`app.services.fields`)."""
 
 Words = Annotated[list[Label], Field(max_length=fields.MAX_WORDS)]
 """The words of one clip."""

@@ -14,12 +14,16 @@ from app.api.schemas.base import (
     Incoming,
     Label,
     Limit,
+    Metadata,
+    MetadataChanges,
     Outgoing,
     PartOfName,
+    Path,
     Roles,
     Seconds,
     Words,
 )
+from app.api.schemas.clip_remarks import ClipWarning, Difference
 from app.api.schemas.filters import Filter
 from app.api.schemas.jobs import Job
 from app.api.schemas.problem import StoredProblem
@@ -88,19 +92,14 @@ def _split(value: Any) -> Any:
     return value.split() if isinstance(value, str) else value
 
 
-class ClipWarning(Outgoing):
-    """A possible error in a clip that can still be used."""
-
-    code: str
-    detail: str
-    likely: float | None = Field(None, description="The value that is probably right, if any.")
-
-
 class Clip(Outgoing):
     """A motion-capture clip with its labels."""
 
     id: str
     name: str
+    path: str | None = Field(
+        description="Path of the file, relative to its import; null for a file without a path."
+    )
     state: ClipState
     format: str | None
     sha256: str
@@ -109,6 +108,7 @@ class Clip(Outgoing):
     words: list[str]
     license: str | None
     source: str | None
+    metadata: Metadata = Field(description="Values of your own, by key.")
     frames: int | None
     frame_rate: float | None = Field(description="Frames per second, as used.")
     declared_frame_rate: float | None = Field(description="Frames per second, as the file says.")
@@ -138,6 +138,9 @@ class ClipCreated(Outgoing):
 
     clip: Clip
     job: Job | None
+    differences: list[Difference] = Field(
+        description="If the library had the same bytes already: what came with other values."
+    )
 
 
 class ClipList(Outgoing):
@@ -160,6 +163,20 @@ class ClipForm(Incoming):
     )
     license: Label | None = Field(None, examples=["CC-BY-4.0"])
     source: Label | None = None
+    metadata: Json[MetadataChanges] | None = Field(
+        None,
+        description='JSON: values of your own by key, as in {"condition": "fatigued", "age": 30}.',
+    )
+    path: Path | None = Field(
+        None,
+        description="Where the file was, relative to a folder of yours, as in `cmu/02/02_01.bvh`.",
+    )
+    on_conflict: Literal["keep", "update", "error"] = Field(
+        "keep",
+        description="If the library has the same bytes already, with other labels or hints: keep"
+        " the stored values; update them; or answer 409 and change nothing. `differences` lists"
+        " the fields. A field that is not sent stays as it is.",
+    )
     frame_rate: FileFrameRate = None
     unit: Unit = None
     up_axis: UpAxis | None = None
@@ -175,6 +192,11 @@ class ClipForm(Incoming):
         examples=["0.5 1.1"],
     )
 
+    def labels(self) -> dict[str, Any]:
+        """The labels and hints that were sent."""
+        sent = self.model_dump(exclude_unset=True, exclude={"path", "on_conflict"})
+        return {name: value for name, value in sent.items() if value is not None}
+
 
 class ClipPatch(Incoming):
     """Corrections. Only the sent fields change. null deletes a value (not for `name`)."""
@@ -185,6 +207,11 @@ class ClipPatch(Incoming):
     words: Words | None = None
     license: Label | None = None
     source: Label | None = None
+    metadata: MetadataChanges | None = Field(
+        None,
+        description="Only the sent keys change. null deletes a key; null instead of the object"
+        " deletes all.",
+    )
     frame_rate: FrameRate | None = Field(
         None, description="The clip is analyzed again. null restores the declared frame rate."
     )
@@ -220,7 +247,9 @@ class ClipQuery(Filter):
     """Filters of a list of clips, as in a search. A clip must pass all given filters."""
 
     state: ClipState | None = None
-    q: PartOfName | None = Field(None, description="Part of the name.")
+    q: PartOfName | None = Field(
+        None, description="Part of the name, of the path, or of a text of the metadata."
+    )
     sort: Sort = Field("-created_at", description="A minus sign at the start reverses the order.")
     limit: Limit = 10
     cursor: Cursor | None = None

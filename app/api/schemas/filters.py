@@ -2,15 +2,32 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Self
 
-from pydantic import Field
+from pydantic import ConfigDict, Field, ModelWrapValidatorHandler, PrivateAttr, model_validator
+from pydantic.config import JsonDict
 
 from app.api.schemas.base import AnyOf, Incoming, Seconds
+from app.search.index.filters import META_PATTERN, is_metadata_key
+
+_VALUE: JsonDict = {"type": ["string", "number", "boolean"]}
+_META: JsonDict = {
+    "description": "Metadata: `meta.KEY` and `not_meta.KEY` are a value or a list of values;"
+    " `meta.KEY.min` and `meta.KEY.max` are numbers, both ends included.",
+    "anyOf": [_VALUE, {"type": "array", "items": _VALUE}],
+}
 
 
 class Filter(Incoming):
-    """Filters of the clips before they are ranked. A clip must pass all given filters."""
+    """Filters of the clips before they are ranked. A clip must pass all given filters.
+
+    `meta.KEY=VALUE` filters by the metadata of the clips, `not_meta.KEY=VALUE` leaves clips with
+    that value out, and `meta.KEY.min=30`, `meta.KEY.max=40` filter by a number.
+    """
+
+    model_config = ConfigDict(json_schema_extra={"patternProperties": {META_PATTERN: _META}})
+
+    _metadata: dict[str, Any] = PrivateAttr(default_factory=dict)
 
     person: AnyOf | None = None
     task: AnyOf | None = None
@@ -22,10 +39,26 @@ class Filter(Incoming):
     not_word: AnyOf | None = Field(None, description="Clips with none of these words.")
     not_license: AnyOf | None = Field(None, description="Clips with none of these licenses.")
     not_source: AnyOf | None = Field(None, description="Clips from none of these sources.")
+    folder: AnyOf | None = Field(
+        None, description="Clips whose files were in this folder of an import, or below it."
+    )
+    not_folder: AnyOf | None = Field(None, description="Clips of none of these folders.")
     min_duration: Seconds | None = Field(None, description="Seconds.")
     max_duration: Seconds | None = Field(None, description="Seconds.")
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _with_metadata(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        """Keep the conditions on metadata apart: their names are not known in advance."""
+        if not isinstance(data, dict):
+            return handler(data)
+        conditions = {name: value for name, value in data.items() if is_metadata_key(name)}
+        model = handler({name: value for name, value in data.items() if name not in conditions})
+        model._metadata = conditions
+        return model
 
     def given(self) -> dict[str, Any]:
         """Return the sent filters, without other fields of a subclass."""
         values = {name: getattr(self, name) for name in Filter.model_fields}
-        return {name: value for name, value in values.items() if value is not None}
+        sent = {name: value for name, value in values.items() if value is not None}
+        return sent | self._metadata

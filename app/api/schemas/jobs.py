@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, Field
 
 from app.api.failures.problems import stored_problem
 from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing
+from app.api.schemas.clip_remarks import ClipWarning, Difference
 from app.api.schemas.problem import StoredProblem
 from app.store.jobs.import_files import FileOutcome
 from app.store.jobs.record import JobKind, JobState
@@ -39,8 +40,10 @@ class Job(Outgoing):
     finished_at: datetime | None
     result: Annotated[dict[str, Any] | None, BeforeValidator(_result)] = Field(
         description="The result. Its members depend on `kind`. An import has the number of files by"
-        " outcome (`total`, `ready`, `exists`, `failed`, `deleted`, `absent`), its first 100"
-        " `files` (failed files first), and the number of the other files (`files_left_out`)."
+        " outcome (`total`, `new`, `updated`, `unchanged`, `conflicting`, `failed`, `skipped`,"
+        " `deleted`, `absent`), the number of files that its pattern of paths does not match"
+        " (`unmatched`), the number of clips by the code of their `warnings`, its first 100 `files`"
+        " (files with problems first), and the number of the other files (`files_left_out`)."
         " `GET .../files` lists all files. Lists of jobs leave `files` out."
     )
     error: StoredProblem
@@ -51,12 +54,18 @@ class JobFile(Outgoing):
 
     path: str = Field(description="Path in the archive or folder.")
     outcome: FileOutcome = Field(
-        description="queued, processing or ready: the state of the clip. failed: there is no clip,"
-        " or the clip cannot be analyzed. exists: the library already had the content. deleted: the"
+        description="queued, processing or ready: the state of the new clip. updated, unchanged or"
+        " conflicting: the library already had the content; labels that came now were applied, were"
+        " the same, or were not applied because somebody edited them since. failed: there is no"
+        " clip, or the clip cannot be analyzed. skipped: the file is not a motion. deleted: the"
         " clip was deleted later. absent: a manifest names the file, but the file is missing."
     )
     clip_id: str | None
     error: StoredProblem = Field(description="The reason why it failed, else null.")
+    differences: list[Difference] = Field(
+        description="Labels and hints that differed from those of the stored clip."
+    )
+    warnings: list[ClipWarning] = Field(description="The warnings of its clip now.")
 
 
 class JobFileList(Outgoing):

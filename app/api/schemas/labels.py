@@ -11,9 +11,11 @@ from app.api.schemas.base import (
     Limit,
     Outgoing,
     PartOfName,
+    Path,
     Probability,
     Words,
 )
+from app.store.clips.metadata_values import ValueKind
 
 
 class NamedCount(Outgoing):
@@ -52,6 +54,53 @@ class LabelPage(Incoming):
 
     limit: Limit = 1000
     cursor: Cursor | None = None
+
+
+class ValueCount(Outgoing):
+    """A value, and the number of clips that have it."""
+
+    value: bool | int | float | str
+    count: int
+
+
+class MetadataKey(Outgoing):
+    """A key of the metadata in this library."""
+
+    name: str = Field(description="Filter by it with `meta.NAME`.")
+    count: int = Field(ge=0, description="Clips that have it.")
+    kinds: dict[ValueKind, int] = Field(description="Number of clips by the kind of their value.")
+    minimum: float | None = Field(description="Of the numbers; null without any.")
+    maximum: float | None = Field(description="Of the numbers; null without any.")
+    values: list[ValueCount] = Field(description="The most frequent values, at most 10.")
+
+
+class MetadataKeys(Outgoing):
+    """A page of the keys of the metadata, by name."""
+
+    items: list[MetadataKey]
+    next: str | None = None
+
+
+class FolderQuery(LabelPage):
+    """A folder, and a page of the folders in it."""
+
+    folder: Path | None = Field(None, description="Default: the root.")
+
+
+class Folder(Outgoing):
+    """A folder in which files of imported clips were."""
+
+    name: str
+    path: str = Field(description="Filter by it with `folder`.")
+    clips: int = Field(ge=0, description="Clips in it and below it.")
+    subfolders: int = Field(ge=0, description="Folders directly in it.")
+
+
+class FolderList(Outgoing):
+    """A page of the folders in a folder, by name."""
+
+    items: list[Folder]
+    next: str | None = None
 
 
 WORD_SCORE = (

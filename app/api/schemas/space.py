@@ -38,6 +38,7 @@ class MapPoint(Outgoing):
 
     clip_id: str
     name: str
+    path: str | None = Field(description="Path of the file, relative to its import.")
     person: str | None
     task: str | None
     words: list[str]
@@ -75,6 +76,7 @@ class SpaceMap(Outgoing):
                 MapPoint(
                     clip_id=clip.id,
                     name=clip.name,
+                    path=clip.path,
                     person=clip.person,
                     task=clip.task,
                     words=list(clip.words),

@@ -13,7 +13,7 @@ from app import evaluate
 from app.cli.evaluate.drawing import Drawing
 from app.cli.evaluate.running import parsed_filter
 from app.cli.evaluate.tables import CsvFile, check_csv, keep_table, report, show_table
-from app.cli.options import FilterJson, PictureFormat
+from app.cli.options import By, FilterJson, PictureFormat
 from app.cli.output import AsJson, progress_bar
 from app.cli.settings import open_library
 from app.evaluate import KeyposeEvaluation
@@ -47,6 +47,7 @@ def keyposes(
     context: typer.Context,
     tolerance: Tolerance = TOLERANCE,
     filter_json: FilterJson = None,
+    by: By = None,
     picture: Picture = None,
     pictures_dir: Pictures = None,
     picture_format: PictureFormat = "svg",
@@ -64,7 +65,7 @@ def keyposes(
             typer.echo(f"{len(clips)} pictures are in {pictures_dir}.\n", err=as_json)
             if not evaluate.is_any_annotated(lib, filter):
                 return  # only the pictures were possible
-        found = evaluate.judge_keyposes(lib, filter, tolerance)
+        found = evaluate.judge_keyposes(lib, filter, tolerance, by)
     report(lambda: _document(found), lambda: _print(found), as_json=as_json, csv_file=csv_file)
     drawing.draw_one(lambda form: keypose_pictures.threshold_figure(found, form))
 
@@ -98,6 +99,10 @@ def _document(found: KeyposeEvaluation) -> dict[str, Any]:
         "methods": {
             judged.method: {
                 "held_out": counts_document(judged.counts),
+                "by_group": {
+                    group: counts_document(counts)
+                    for group, counts in found.by_group(judged.method).items()
+                },
                 "usual_thresholds": counts_document(judged.usual),
                 "learned": asdict(judged.learned),
                 "over_t1": _curve(judged.t1),
@@ -136,6 +141,7 @@ def _print(found: KeyposeEvaluation) -> None:
         ["method", "thresholds", "T1", "T2", "found", "right", "precision", "recall", "F"],
         [row for judged in found.methods for row in _rows(judged, found.recordings)],
     )
+    _print_groups(found)
     typer.echo("\nlearned: from all clips; each clip is judged with those of other recordings.\n")
     for judged in found.methods:
         for name, curve, held in (
@@ -143,6 +149,26 @@ def _print(found: KeyposeEvaluation) -> None:
             ("T2", judged.t2, f"T1 = {judged.learned.t1:g}"),
         ):
             _print_curve(f"{judged.method}, {held}", name, curve)
+
+
+def _print_groups(found: KeyposeEvaluation) -> None:
+    rows = [
+        (
+            group,
+            judged.method,
+            one.found,
+            one.correct,
+            one.precision,
+            one.recall,
+            one.f,
+        )
+        for judged in found.methods
+        for group, one in found.by_group(judged.method).items()
+    ]
+    if rows:
+        typer.echo("\nThe same for the clips of each group, learned thresholds:\n")
+        columns = ("group", "method", "found", "right", "precision", "recall", "F")
+        show_table("groups", columns, rows)
 
 
 def _rows(judged: evaluate.JudgedKeyposes, recordings: int) -> list[list[object]]:

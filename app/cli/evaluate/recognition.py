@@ -13,7 +13,7 @@ from app.cli.evaluate.recognition_document import document
 from app.cli.evaluate.recognition_tables import print_tables
 from app.cli.evaluate.running import judging, parsed_filter
 from app.cli.evaluate.tables import CsvFile, check_csv, report
-from app.cli.options import FilterJson, PictureFormat
+from app.cli.options import By, FilterJson, PictureFormat
 from app.cli.output import AsJson
 from app.evaluate.recognition import pictures as recognition_pictures
 
@@ -44,6 +44,7 @@ def recognition(
     method: Methods = None,
     false_accept_rate: Rate = None,
     filter_json: FilterJson = None,
+    by: By = None,
     pictures_dir: Pictures = None,
     picture_format: PictureFormat = "svg",
     csv_file: CsvFile = None,
@@ -59,6 +60,7 @@ def recognition(
             filter,
             tuple(method or evaluate.RECOGNIZERS),
             false_accept_rate=false_accept_rate,
+            by=by,
             progress=progress,
         )
     report(lambda: document(found), lambda: print_tables(found), as_json=as_json, csv_file=csv_file)

@@ -48,6 +48,7 @@ def _held_out(held: HeldOut) -> dict[str, Any]:
                 "recognised": _recognized(judged.recognized),
                 "of_what_is_new": _recognized(judged.of_new),
                 "by_name": {name: _recognized(one) for name, one in judged.by_name.items() if name},
+                "by_group": {name: _recognized(one) for name, one in judged.by_group.items()},
                 "unknown": {factor: _unknown(one) for factor, one in judged.unknown.items()},
                 "confusion": {
                     factor: {"labels": list(names), "shares": shares.tolist()}

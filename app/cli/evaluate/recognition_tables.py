@@ -48,6 +48,7 @@ def _print_recognized(found: RecognitionEvaluation) -> None:
         _print_shares(
             "take_left_out", "A fifth of the takes left out in turn", found.held_out[LeftOut.TAKE]
         )
+        _print_groups(found.held_out[LeftOut.TAKE])
     for takes, held in found.takes.items():
         title = f"{_counted(takes, 'take')} a cell learned, {DRAWS} random draws"
         _print_shares(f"{takes}_takes_learned", title, held)
@@ -65,6 +66,18 @@ def _print_shares(name: str, title: str, held: HeldOut) -> None:
     person, task, both = held.chance
     rows.append(["chance", task, person, both, held.methods[0].recognized.both.of])
     show_table(name, ["method", "task", "person", "both", "clips"], rows)
+
+
+def _print_groups(held: HeldOut) -> None:
+    rows: list[list[object]] = [
+        [group, judged.method, *_values(one), one.both.of]
+        for judged in held.methods
+        for group, one in judged.by_group.items()
+    ]
+    if rows:
+        typer.echo("\nThe same for the clips of each group:\n")
+        columns = ["group", "method", "task", "person", "both", "clips"]
+        show_table("groups", columns, rows)
 
 
 def _values(found: Recognized) -> list[object]:

@@ -14,7 +14,7 @@ from app.cli.evaluate.confusion_table import print_confusion
 from app.cli.evaluate.drawing import Drawing
 from app.cli.evaluate.running import judging, parsed_filter
 from app.cli.evaluate.tables import CsvFile, check_csv, report, show_table
-from app.cli.options import FilterJson, PictureFormat
+from app.cli.options import By, FilterJson, PictureFormat
 from app.cli.output import AsJson, print_text
 from app.evaluate import RetrievalEvaluation, VolumeEvaluation
 from app.evaluate import charts as pictures
@@ -46,6 +46,12 @@ Pictures = Annotated[
     typer.Option("--pictures", help="Draw confusions, vectors, convergence into this folder."),
 ]
 
+_GROUP_COLUMNS = (
+    *("method", "queries", "nearest", "precision_at_4", "precision_at_20"),
+    "mean_average_precision",
+)
+"""The figures in the table of groups."""
+
 
 def retrieval(
     context: typer.Context,
@@ -55,6 +61,7 @@ def retrieval(
     eta: Eta = 0.0,
     queries: Queries = evaluate.MAX_QUERIES,
     filter_json: FilterJson = None,
+    by: By = None,
     picture: Picture = None,
     pictures_dir: Pictures = None,
     picture_format: PictureFormat = "svg",
@@ -75,6 +82,7 @@ def retrieval(
             k=k,
             threshold=eta,
             max_queries=queries,
+            by=by,
             progress=progress,
         )
         volumes = evaluate.judge_volumes(lib, filter, classes=names, threshold=eta)
@@ -95,6 +103,12 @@ def _confusions(found: RetrievalEvaluation, form: pictures.Format) -> bytes:
 def _document(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> dict[str, Any]:
     return {
         "figures": [asdict(judged.figures) for judged in found.methods],
+        "by_group": {
+            judged.figures.method: {
+                group: asdict(figures) for group, figures in judged.by_group.items()
+            }
+            for judged in found.methods
+        },
         "true_positive_rates": {
             "classes": found.chosen,
             "k": found.k,
@@ -135,6 +149,7 @@ def _print(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> None:
         ["method", "1-NN", "P@4", "P@20", "MAP"],
         [list(asdict(judged.figures).values())[:5] for judged in found.methods],
     )
+    _print_groups(found)
     typer.echo(f"\nTrue-positive rates among the {found.k} nearest in the mixture (table 1):\n")
     show_table(
         "true_positive_rates",
@@ -152,6 +167,18 @@ def _print(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> None:
             )
             print_confusion(found.classes, judged.confusion, f"confusion_{judged.figures.method}")
     print_text("\n" + "\n".join(_remarks(found, volumes)))
+
+
+def _print_groups(found: RetrievalEvaluation) -> None:
+    rows = [
+        (group, *(getattr(figures, name) for name in _GROUP_COLUMNS))
+        for judged in found.methods
+        for group, figures in judged.by_group.items()
+    ]
+    if rows:
+        typer.echo("\nThe same for the queries of each group:\n")
+        columns = ["group", "method", "queries", "1-NN", "P@4", "P@20", "MAP"]
+        show_table("groups", columns, rows)
 
 
 def _remarks(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> list[str]:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from app.analysis.energy.energy import EnergyMethod
 from app.analysis.keyposes.end_effectors import end_effector_candidates
 from app.errors import NotEnoughLabels
+from app.evaluate.grouping import Grouping, grouped
 from app.models.keyposes.matching import TOLERANCE, Counts, match, total
 from app.models.keyposes.thresholds import (
     USUAL,
@@ -40,13 +41,17 @@ NO_ANNOTATIONS = (
 
 @dataclass(frozen=True, slots=True)
 class JudgedClip:
-    """A row of Table 1: the number of a clip's keyposes, and the results of each method."""
+    """A row of Table 1: the number of a clip's keyposes, and the results of each method.
+
+    group: for which counts are added up, None without groups.
+    """
 
     clip_id: str
     name: str
     task: str | None
     true: int
     counts: Mapping[str, Counts]
+    group: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +80,12 @@ class KeyposeEvaluation:
     clips: tuple[JudgedClip, ...]
     methods: tuple[JudgedKeyposes, ...]
 
+    def by_group(self, method: str) -> dict[str, Counts]:
+        """The held-out counts of a method for each group of clips; empty without groups."""
+        of_a_group = [clip for clip in self.clips if clip.group is not None]
+        parts = grouped([clip.group or "" for clip in of_a_group], of_a_group)
+        return {group: total(clip.counts[method] for clip in part) for group, part in parts.items()}
+
 
 def is_any_annotated(lib: Library, filter: ClipFilter | None = None) -> bool:
     """Whether the library has an annotated clip that passes the filter."""
@@ -82,9 +93,16 @@ def is_any_annotated(lib: Library, filter: ClipFilter | None = None) -> bool:
 
 
 def judge_keyposes(
-    lib: Library, filter: ClipFilter | None = None, tolerance: float = TOLERANCE
+    lib: Library,
+    filter: ClipFilter | None = None,
+    tolerance: float = TOLERANCE,
+    by: str | None = None,
 ) -> KeyposeEvaluation:
-    """Judge all annotated clips that pass the filter. Raises BadField, NotEnoughLabels."""
+    """Judge all annotated clips that pass the filter.
+
+    by: counts for each group of clips too, see `Grouping`. Raises BadField, NotEnoughLabels.
+    """
+    grouping = Grouping.of(by)
     if not 0 < tolerance <= 1:
         raise fields.bad_field("tolerance", "must be above 0 and at most 1 s")
     annotated = read_annotated(lib.store, filter)
@@ -102,10 +120,11 @@ def judge_keyposes(
         clips=tuple(
             JudgedClip(
                 clip_id=clip.clip.id,
-                name=clip.clip.name,
+                name=clip.clip.full_name,
                 task=clip.clip.task,
                 true=len(clip.true),
                 counts={method: counts[method][index] for method in JUDGED_KEYPOSES},
+                group=None if grouping is None else grouping.group(clip.clip),
             )
             for index, clip in enumerate(annotated)
         ),

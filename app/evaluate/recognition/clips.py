@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from app.errors import NotEnoughLabels
+from app.evaluate.grouping import Grouping
 from app.models.held_out.recognition import Clips
 from app.models.recognition.views import full_samples
 from app.numerics.arrays import FloatArray, IntArray
@@ -26,7 +27,8 @@ class JudgedClips:
     groups: (N,) clips of one recording share a value and are never split between training and
     probes; sources: (N,) where they come from, None if unknown; unlabeled: the number of clips
     that carry neither label;
-    angles: (N, 642) angle samples, None where a clip has none; wide: (N, 512) wide motion vectors.
+    angles: (N, 642) angle samples, None where a clip has none; wide: (N, 512) wide motion vectors;
+    reported: (N,) the group of each clip for which figures are reported, None without groups.
     """
 
     samples: FloatArray
@@ -37,6 +39,7 @@ class JudgedClips:
     unlabeled: int = 0
     angles: FloatArray | None = None
     wide: FloatArray | None = None
+    reported: Sequence[str] | None = None
 
     def __len__(self) -> int:
         return len(self.groups)
@@ -73,9 +76,11 @@ def names_of(labels: Labels) -> list[str]:
     return sorted({label for label in labels if label})
 
 
-def read_judged_clips(lib: Library, filter: ClipFilter | None) -> JudgedClips:
-    """The ready clips that pass the filter and carry a label."""
-    return judged_clips(read_training(lib, filter))
+def read_judged_clips(
+    lib: Library, filter: ClipFilter | None, grouping: Grouping | None = None
+) -> JudgedClips:
+    """The ready clips that pass the filter and carry a label, with their groups."""
+    return judged_clips(read_training(lib, filter), grouping)
 
 
 def read_training(lib: Library, filter: ClipFilter | None) -> TrainingSet:
@@ -87,7 +92,7 @@ def read_training(lib: Library, filter: ClipFilter | None) -> TrainingSet:
     return replace(training, is_anonymous=not lib.settings.recognize_persons)
 
 
-def judged_clips(training: TrainingSet) -> JudgedClips:
+def judged_clips(training: TrainingSet, grouping: Grouping | None = None) -> JudgedClips:
     """The clips of a training set that carry a person or a task."""
     pairs = zip(training.persons, training.tasks, strict=True)
     use = [i for i, labels in enumerate(pairs) if any(labels)]
@@ -103,4 +108,5 @@ def judged_clips(training: TrainingSet) -> JudgedClips:
         unlabeled=len(training) - len(use),
         angles=np.stack(present) if present and len(present) == len(use) else None,
         wide=training.wide[use] if use else None,
+        reported=None if grouping is None else [grouping.group(training.clips[i]) for i in use],
     )

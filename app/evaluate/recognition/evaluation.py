@@ -12,6 +12,7 @@ from statistics import median
 from typing import TypeVar
 
 from app.errors import NotEnoughLabels
+from app.evaluate.grouping import Grouping, grouped
 from app.evaluate.recognition.clips import JudgedClips, read_judged_clips, read_training
 from app.evaluate.recognition.methods import (
     DEFAULT,
@@ -69,16 +70,18 @@ def judge_recognition(
     methods: Sequence[str] = tuple(METHODS),
     *,
     false_accept_rate: float | None = None,
+    by: str | None = None,
     progress: Progress | None = None,
 ) -> RecognitionEvaluation:
     """Judge each method on the ready clips that pass the filter.
 
     false_accept_rate: above 0 and below 1, for the methods default and perera; None: each uses
-    its fitted threshold. Raises BadField for an unknown method or a wrong rate, and
-    NotEnoughLabels if fewer than two clips have a label.
+    its fitted threshold; by: shares for each group of clips too, see `Grouping`. Raises BadField
+    for an unknown method or grouping or a wrong rate, and NotEnoughLabels if fewer than two clips
+    have a label.
     """
     _check(methods, false_accept_rate)
-    clips = read_judged_clips(lib, filter)
+    clips = read_judged_clips(lib, filter, Grouping.of(by))
     if len(clips) < 2:
         raise NotEnoughLabels("Two ready clips with a person or a task are needed to judge.")
     known = methods_at(false_accept_rate)
@@ -173,7 +176,8 @@ class _MethodRunner:
             except NotEnoughLabels as reason:
                 self.reasons[f"{name}, {method}"] = reason.detail
         trials_of_first = next(iter(trials.values()), ())
-        judged = tuple(_judged(method, some, name) for method, some in trials.items())
+        reported = self._clips.reported
+        judged = tuple(_judged(method, some, name, reported) for method, some in trials.items())
         return HeldOut(len(found), judged, chance(trials_of_first))
 
     def label_given(self, found: Sequence[Round]) -> tuple[LabelGiven, ...]:
@@ -222,7 +226,9 @@ _FACTOR_OF: dict[str, str] = {LeftOut.PERSON: "person", LeftOut.TASK: "task"}
 """The factor whose labels are left out as a whole."""
 
 
-def _judged(method: str, trials: Sequence[Trial], way: str) -> Judged:
+def _judged(
+    method: str, trials: Sequence[Trial], way: str, reported: Sequence[str] | None
+) -> Judged:
     factor = _FACTOR_OF.get(way)
     of_new: list[Trial] = []
     if factor is not None:
@@ -236,7 +242,15 @@ def _judged(method: str, trials: Sequence[Trial], way: str) -> Judged:
         unknown=_unknown(trials, way),
         confusion={name: confusion(trials, name) for name in FACTORS},
         by_name=_by_left_out(trials),
+        by_group=_by_group(trials, reported),
     )
+
+
+def _by_group(trials: Sequence[Trial], reported: Sequence[str] | None) -> dict[str, Recognized]:
+    if reported is None:
+        return {}
+    parts = grouped([reported[trial.clip] for trial in trials], trials)
+    return {group: recognized(part) for group, part in parts.items()}
 
 
 def _unknown(trials: Sequence[Trial], way: str) -> dict[str, Unknown]:

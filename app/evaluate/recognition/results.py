@@ -24,7 +24,7 @@ class Judged:
     even if the method calls it new; of_new: the same for the clips alone whose label was left
     out (these shares are of the other factor); unknown: by factor, if both new and known clips
     were probed; confusion: by factor, C labels and (C, C) shares; by_name: `recognized` by what
-    was left out.
+    was left out; by_group: `recognized` by the reported group of the probed clips.
     """
 
     method: str
@@ -33,6 +33,7 @@ class Judged:
     unknown: Mapping[str, Unknown]
     confusion: Mapping[str, tuple[tuple[str, ...], FloatArray]]
     by_name: Mapping[str, Recognized]
+    by_group: Mapping[str, Recognized]
 
 
 @dataclass(frozen=True, slots=True)

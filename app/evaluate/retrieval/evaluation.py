@@ -5,10 +5,11 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from app.evaluate.grouping import Grouping, grouped
 from app.evaluate.retrieval.labeled import LabeledClips, read_labeled
 from app.evaluate.retrieval.rankings import Ranker, Volumes, by_method
 from app.models.held_out.class_rankings import JudgedRanking, confusion_matrix, true_positive_rates
@@ -54,12 +55,13 @@ class JudgedMethod:
     """One method's part of the tables.
 
     rates: (chosen,) true-positive rates of experiment 1; confusion: (C, C) of experiment 2,
-    rows are the true classes and sum to 1.
+    rows are the true classes and sum to 1; by_group: figures of the queries of each group.
     """
 
     figures: RetrievalFigures
     rates: FloatArray
     confusion: FloatArray
+    by_group: Mapping[str, RetrievalFigures] = field(default_factory=dict)
 
     @property
     def overall(self) -> float:
@@ -95,16 +97,19 @@ def judge_retrieval(
     k: int = K,
     threshold: float = 0.0,
     max_queries: int = MAX_QUERIES,
+    by: str | None = None,
     progress: Progress | None = None,
 ) -> RetrievalEvaluation:
     """Judge each method with the clips that pass the filter as queries for each other.
 
     Sun's two methods are also judged with q = 1, and with a threshold eta > 0 (body lengths) with
-    both q again. classes: those of table 1, None for the largest four. Other files of the query's
-    recording, and clips without a task, are ignored. Raises NotEnoughLabels, and BadField for a
-    class that cannot be judged or a wrong number.
+    both q again. classes: those of table 1, None for the largest four. by: figures for each group
+    of queries too, see `Grouping`. Other files of the query's recording, and clips without a task,
+    are ignored. Raises NotEnoughLabels, and BadField for a class that cannot be judged or a wrong
+    number or grouping.
     """
     _check(k, threshold, max_queries)
+    grouping = Grouping.of(by)
     lib.index.catch_up(lib.store)
     labeled = read_labeled(lib, filter)
     chosen = labeled.chosen(classes, HIDDEN_CLASSES)
@@ -128,7 +133,8 @@ def judge_retrieval(
         for method in suns:
             name = f"{method.value} q={q}" + (f" eta={eta:g}" if eta else "")
             found[name] = list(judge(volumes.by(method)))
-    return _evaluation(labeled, chosen, k, found)
+    groups = None if grouping is None else list(map(grouping.group, queries))
+    return _evaluation(labeled, chosen, k, found, groups)
 
 
 def _check(k: int, threshold: float, max_queries: int) -> None:
@@ -161,6 +167,7 @@ def _evaluation(
     chosen: Sequence[str],
     k: int,
     found: Mapping[str, Sequence[JudgedRanking]],
+    groups: Sequence[str] | None,
 ) -> RetrievalEvaluation:
     of_class = [labeled.classes.index(name) for name in chosen]
     count = len(labeled.classes)
@@ -170,6 +177,7 @@ def _evaluation(
                 figures=_figures(name, judged),
                 rates=true_positive_rates(judged, count)[of_class],
                 confusion=confusion_matrix(judged, count),
+                by_group=_by_group(name, judged, groups),
             )
             for name, judged in found.items()
         ),
@@ -180,6 +188,13 @@ def _evaluation(
         unlabeled=labeled.unlabeled,
         alone=len(labeled.clips) - len(labeled.in_a_class),
     )
+
+
+def _by_group(
+    name: str, judged: Sequence[JudgedRanking], groups: Sequence[str] | None
+) -> dict[str, RetrievalFigures]:
+    parts = {} if groups is None else grouped(groups, judged)
+    return {group: _figures(name, part) for group, part in parts.items()}
 
 
 def _figures(name: str, judged: Sequence[JudgedRanking]) -> RetrievalFigures:

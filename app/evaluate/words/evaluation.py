@@ -136,4 +136,4 @@ def _query_words(query: str, vocabulary: WordVocabulary) -> tuple[str, ...]:
 
 def _near(training: TrainingSet, row: int, ratio: float, carries: bool) -> NearClip:
     clip = training.clips[row]
-    return NearClip(clip.id, clip.name, ratio, carries, clip.words)
+    return NearClip(clip.id, clip.full_name, ratio, carries, clip.words)

@@ -2,8 +2,10 @@
 
 The keys of a filter are `person task word license source` (a string, or an array: the clip has one
 of its values), the same keys with the prefix `not_` (the clip has none of the values), and
-`min_duration max_duration` (seconds). A clip must meet all conditions. A clip without a label meets
-all `not_` conditions for this label.
+`min_duration max_duration` (seconds). `folder` and `not_folder` name folders of the paths of files;
+the folders below them count too. `meta.KEY` and `not_meta.KEY` are values of a key of the metadata,
+`meta.KEY.min` and `meta.KEY.max` numbers, both ends included. A clip must meet all conditions. A
+clip without a label meets all `not_` conditions for this label.
 """
 
 from __future__ import annotations
@@ -11,13 +13,16 @@ from __future__ import annotations
 import math
 import unicodedata
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from app.errors import BadField, Place
 from app.models.words.language.normalize import normalize_word
-from app.store.clips.filter import ClipFilter
+from app.store.clips.filter import ClipFilter, MetadataCondition
+from app.store.clips.metadata_values import as_text, from_cell
+from app.store.clips.record import META
 
-LABEL_KEYS = ("person", "task", "word", "license", "source")
+LABEL_KEYS = ("person", "task", "word", "license", "source", "folder")
 NOT = "not_"
 NOT_KEYS = tuple(NOT + key for key in LABEL_KEYS)
 MAX_LABELS = 100
@@ -25,6 +30,12 @@ MAX_LABELS = 100
 MAX_LABEL_LENGTH = 300
 """Largest number of characters of a label; no clip has a longer one."""
 DURATION_KEYS = ("min_duration", "max_duration")
+NOT_META = NOT + META
+META_PATTERN = r"^(not_)?meta\."
+"""The names of conditions on metadata, as a regular expression."""
+MINIMUM, MAXIMUM = ".min", ".max"
+MAX_CONDITIONS = 20
+"""Largest number of keys of the metadata in a filter."""
 
 
 def parse_filter(given: Mapping[str, Any] | None) -> ClipFilter:
@@ -34,14 +45,23 @@ def parse_filter(given: Mapping[str, Any] | None) -> ClipFilter:
     """
     places: list[Place] = []
     values: dict[str, Any] = {}
+    conditions = _Conditions()
     for key, value in (given or {}).items():
         try:
-            values[key] = _read(key, value)
+            if is_metadata_key(key):
+                conditions.add(key, value)
+            else:
+                values[key] = _read(key, value)
         except ValueError as problem:
             places.append(Place(f"filter.{key}", str(problem)))
     if places:
         raise BadField("The filter cannot be used.", places=places)
-    return ClipFilter(**values)
+    return ClipFilter(**values, metadata=conditions.all())
+
+
+def is_metadata_key(key: str) -> bool:
+    """Whether a key of a filter is a condition on metadata."""
+    return key.startswith((META, NOT_META))
 
 
 def as_filter(given: ClipFilter | Mapping[str, Any] | None) -> ClipFilter:
@@ -52,7 +72,74 @@ def as_filter(given: ClipFilter | Mapping[str, Any] | None) -> ClipFilter:
 def as_stored(key: str, value: str) -> str:
     """A label as it is stored: in NFC, without outer spaces; words are normalized."""
     stripped = unicodedata.normalize("NFC", value).strip()
+    if key == "folder":
+        return stripped.replace("\\", "/").strip("/")
     return normalize_word(stripped) if key == "word" else stripped
+
+
+class _Conditions:
+    """The conditions on metadata, one for each key and one for each negated key."""
+
+    def __init__(self) -> None:
+        self._by_key: dict[tuple[str, bool], MetadataCondition] = {}
+
+    def add(self, name: str, value: Any) -> None:
+        """Add the condition of one member of a filter. Raises ValueError."""
+        is_negated = name.startswith(NOT)
+        key = name.removeprefix(NOT).removeprefix(META)
+        end = key[-len(MINIMUM) :]
+        if not is_negated and end in (MINIMUM, MAXIMUM):
+            key = key.removesuffix(end)
+            changes: dict[str, Any] = {"minimum" if end == MINIMUM else "maximum": _number(value)}
+        else:
+            changes = {"texts": _texts(value)}
+        if not key:
+            raise ValueError("must name a key of the metadata")
+        before = self._by_key.get((key, is_negated))
+        before = before or MetadataCondition(_nfc(key), is_negated=is_negated)
+        self._by_key[key, is_negated] = replace(before, **changes)
+        if len(self._by_key) > MAX_CONDITIONS:
+            raise ValueError(f"a filter has at most {MAX_CONDITIONS} keys of the metadata")
+
+    def all(self) -> tuple[MetadataCondition, ...]:
+        """All conditions."""
+        return tuple(self._by_key.values())
+
+
+def _nfc(text: str) -> str:
+    return unicodedata.normalize("NFC", text).strip()
+
+
+def _texts(value: Any) -> tuple[str, ...]:
+    """The texts of the accepted values. "30.0" stands for itself and for the number 30."""
+    values = list(value) if isinstance(value, list | tuple) else [value]
+    if not values or not all(isinstance(one, str | int | float) for one in values):
+        raise ValueError("must be a string, a number, a boolean, or an array of them")
+    if len(values) > MAX_LABELS or any(len(str(one)) > MAX_LABEL_LENGTH for one in values):
+        raise ValueError(
+            f"must be at most {MAX_LABELS} values of at most {MAX_LABEL_LENGTH} characters"
+        )
+    return tuple(dict.fromkeys(text for one in values for text in _texts_of(one)))
+
+
+def _texts_of(value: str | float) -> tuple[str, ...]:
+    if isinstance(value, str):
+        text = _nfc(value)
+        return text, as_text(from_cell(text))
+    try:
+        return (as_text(value),)
+    except (ValueError, OverflowError):  # not finite, or larger than a float
+        raise ValueError("must be a finite number") from None
+
+
+def _number(value: Any) -> float:
+    try:
+        number = math.nan if isinstance(value, bool) else float(value)
+    except (TypeError, ValueError, OverflowError):
+        number = math.nan
+    if not math.isfinite(number):
+        raise ValueError("must be a number")
+    return number
 
 
 def _read(key: str, value: Any) -> tuple[str, ...] | float | None:
@@ -60,7 +147,7 @@ def _read(key: str, value: Any) -> tuple[str, ...] | float | None:
         return _labels(key.removeprefix(NOT), value)
     if key in DURATION_KEYS:
         return _seconds(value)
-    keys = ", ".join((*LABEL_KEYS, *NOT_KEYS, *DURATION_KEYS))
+    keys = ", ".join((*LABEL_KEYS, *NOT_KEYS, *DURATION_KEYS, f"{META}KEY"))
     raise ValueError(f"is not a key of a filter; the keys are {keys}")
 
 

@@ -11,48 +11,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import NDArray
 
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
+from app.search.index.column import Column
+from app.search.index.metadata import MetadataColumns
 from app.search.ranking.ranking import IdArray
-from app.store.clips.filter import ClipFilter
+from app.store.clips.filter import ClipFilter, is_in_folder
 from app.store.clips.index_feed import IndexedClip
 
-NAMED = ("person", "task", "license", "source")
-_FIRST_CAPACITY = 1024
-
-
-class Column:
-    """An array (n, *tail) that grows at its end; earlier views of it never change."""
-
-    def __init__(self, dtype: DTypeLike, tail: tuple[int, ...] = ()) -> None:
-        self._data = np.empty((_FIRST_CAPACITY, *tail), dtype=dtype)
-        self._count = 0
-
-    def __len__(self) -> int:
-        return self._count
-
-    def extend(self, values: Sequence[Any] | NDArray[Any]) -> None:
-        """Add entries (m, *tail)."""
-        count = self._count + len(values)
-        if count > len(self._data):
-            # twice the size, so that n entries are copied O(n) times in all
-            capacity = max(count, 2 * len(self._data))
-            grown = np.empty((capacity, *self._data.shape[1:]), self._data.dtype)
-            grown[: self._count] = self.view()
-            self._data = grown
-        self._data[self._count : count] = values
-        self._count = count
-
-    def view(self) -> NDArray[Any]:
-        """All entries so far, (n, *tail)."""
-        return self._data[: self._count]
-
-    def copy(self) -> Column:
-        """A copy. Its entries may be changed, because it has no views yet."""
-        copy = Column(self._data.dtype, self._data.shape[1:])
-        copy.extend(self.view())
-        return copy
+NAMED = ("person", "task", "license", "source", "folder")
 
 
 class Coded:
@@ -74,6 +42,15 @@ class Coded:
     def codes(self, labels: Iterable[str]) -> list[int]:
         """The codes of the labels; labels that no clip ever had are left out."""
         return [self._code_of[label] for label in labels if label in self._code_of]
+
+    def codes_below(self, folders: Iterable[str]) -> list[int]:
+        """The codes of labels that are one of these folders or are below one of them."""
+        parents = tuple(folders)
+        return [
+            code
+            for code, label in enumerate(tuple(self._labels))
+            if label is not None and any(is_in_folder(label, parent) for parent in parents)
+        ]
 
     def _code(self, label: str | None) -> int:
         code = self._code_of.get(label)
@@ -152,6 +129,8 @@ class LabelView:
             mask &= _any_of(self.coded[name], codes)
         for name, codes in self.labels.codes(clip_filter, negated=True).items():
             mask &= ~_any_of(self.coded[name], codes)
+        for condition in clip_filter.metadata:
+            mask &= self.labels.metadata.mask(condition, len(mask))
         for clip_id in exclude:
             mask[self._numbers_of(clip_id)] = False
         return mask
@@ -181,6 +160,7 @@ class Labels:
     def __init__(self) -> None:
         self.number_of: dict[str, int] = {}
         self.words = CodedWords()
+        self.metadata = MetadataColumns()
         self._named = {name: Coded() for name in NAMED}
         self._ids = Column(object)
         self._durations = Column(np.float64)
@@ -202,6 +182,7 @@ class Labels:
         self._durations.extend([clip.duration for clip in clips])
         self._alive.extend(np.ones(len(clips), dtype=bool))
         self.words.extend(clip.words for clip in clips)
+        self.metadata.extend(clip.metadata for clip in clips)
         for name, coded in self._named.items():
             coded.extend(getattr(clip, name) for clip in clips)
         self.number_of.update((clip.id, first + i) for i, clip in enumerate(clips))
@@ -221,7 +202,7 @@ class Labels:
         """
         prefix = "not_" if negated else ""
         codes = {
-            name: coded.codes(values)
+            name: coded.codes_below(values) if name == "folder" else coded.codes(values)
             for name, coded in self._named.items()
             if (values := getattr(clip_filter, prefix + name))
         }
@@ -236,6 +217,7 @@ class Labels:
             is_ready=True,
             duration=float(self._durations.view()[number]),
             words=self.words.at(number),
+            metadata=self.metadata.at(number),
             array=array,
             **named,
         )

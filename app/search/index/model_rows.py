@@ -16,7 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.numerics.arrays import BoolArray, FloatArray
-from app.search.index.labels import Column, Labels, LabelView
+from app.search.index.column import Column
+from app.search.index.labels import Labels, LabelView
 
 BATCH = 2000
 """Number of clips whose rows are computed at a time. It bounds the memory for their arrays."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from app.numerics.arrays import FloatArray
 from app.numerics.nearest import Block, squared_lengths
-from app.search.index.labels import Column
+from app.search.index.column import Column
 from app.search.index.model_rows import (
     Compute,
     FittedRows,

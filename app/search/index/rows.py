@@ -18,7 +18,8 @@ from app.deadline import check
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.euclidean import squared_distances
 from app.numerics.nearest import Block, squared_lengths
-from app.search.index.labels import Column, Labels, LabelView
+from app.search.index.column import Column
+from app.search.index.labels import Labels, LabelView
 from app.store.clips.index_feed import IndexedClip
 
 BLOCK = 32_768

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,12 +13,21 @@ from app.errors import BadContent, EmptyFile, NotFound
 from app.formats.read import check_stack_belongs
 from app.formats.sniff import HEAD_BYTES, TAIL_BYTES, sniff
 from app.services import fields
+from app.services.clips.merging import OnConflict, merge
 from app.services.clips.recordings import NewRecording, attached, stage
 from app.services.library.library import Library
 from app.store.clips import listing as clip_listing
 from app.store.clips import repository as stored
 from app.store.clips.filter import ClipFilter
-from app.store.clips.record import AddResult, AttachedAudio, ClipChanges, ClipRecord, NewClip
+from app.store.clips.record import (
+    AddOutcome,
+    AddResult,
+    AttachedAudio,
+    ClipChanges,
+    ClipRecord,
+    Difference,
+    NewClip,
+)
 from app.store.database.engine import Tx
 from app.store.database.paging import Page
 from app.store.files.files import Readable, StagedFile
@@ -43,12 +52,14 @@ class Created:
     """The result of adding a file.
 
     clip: the clip of its content; job: analyzes the clip, None if it needs no analysis; is_new:
-    False if a clip with the same content existed and needed no analysis.
+    False if a clip with the same content existed and needed no analysis; differences: of the labels
+    and hints that came now from those of a clip that existed.
     """
 
     clip: ClipRecord
     job: JobRecord | None
     is_new: bool
+    differences: tuple[Difference, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,23 +79,27 @@ def create_clip(
     *,
     skeleton: Readable | None = None,
     recording: NewRecording | None = None,
+    path: str | None = None,
+    on_conflict: OnConflict = OnConflict.KEEP,
 ) -> Created:
     """Store a file durably and queue its analysis; on return both survive kill -9.
 
     values: the client's labels and hints, as `fields.checked` takes them; skeleton: the ASF file of
-    an AMC file; recording: a file of sound. If the same bytes (of motion and skeleton) are sent
-    again, the result is the existing clip. That clip is queued again if it had failed, or if it
+    an AMC file; recording: a file of sound; path: where the file was in its folder. If the same
+    bytes (of motion and skeleton) are sent again, the result is the existing clip; on_conflict:
+    what happens if its labels or hints differ. That clip is queued again if it had failed, or if it
     comes with another recording, which replaces the old one. Raises BadField, EmptyFile,
-    UnknownFormat, TooLarge, DiskFull; then nothing is stored.
+    UnknownFormat, TooLarge, DiskFull, Conflict; then nothing is stored.
     """
     file_name = fields.file_name(filename)
     # Before the bytes are read: a wrong label must not cost an upload.
-    labels, hints = fields.labels_and_hints(values or {}, fields.stem(file_name))
+    said = fields.sent_values(values or {}, fields.stem(file_name))
+    tidy_path = fields.path(path)
     limit = lib.settings.max_upload_bytes
     with ExitStack() as files:
         staged = files.enter_context(lib.store.files.stage(content, max_bytes=limit))
         format = check_content(staged)
-        if hints.stack is not None:
+        if said.hints.stack is not None:
             check_stack_belongs(format)
         companion = None
         if skeleton is not None:
@@ -99,14 +114,16 @@ def create_clip(
             sha256=staged.sha256,
             file_name=file_name,
             file_size=staged.size,
-            labels=labels,
-            hints=hints,
+            labels=said.labels,
+            hints=said.hints,
             skeleton_sha256=None if companion is None else companion.sha256,
             audio=audio,
+            path=tidy_path,
+            sent=said.sent,
         )
         with lib.store.write() as tx:
             keep(staged, companion, sound)
-            return add(tx, new)
+            return add(tx, new, on_conflict=on_conflict)
 
 
 def keep(*files: StagedFile | None) -> None:
@@ -116,17 +133,42 @@ def keep(*files: StagedFile | None) -> None:
             file.keep()
 
 
-def add(tx: Tx, new: NewClip, priority: int = UPLOAD_PRIORITY) -> Created:
+def add(
+    tx: Tx,
+    new: NewClip,
+    priority: int = UPLOAD_PRIORITY,
+    on_conflict: OnConflict = OnConflict.KEEP,
+    paths: Collection[str] = (),
+) -> Created:
     """Add the clip of a stored file and queue its analysis, in the caller's transaction.
 
-    If the clip exists and gets another recording, the old one is removed after the commit.
+    paths: of all files that come together. If the clip exists, its labels and hints are merged with
+    the new ones. If it gets another recording, the old one is removed after the commit. Raises
+    Conflict, which must undo the transaction.
     """
     added: AddResult = stored.add_or_get(tx, new)
-    if not added.needs_analysis:
-        return Created(added.clip, None, is_new=False)
-    job = enqueue_ingest(tx, added.clip.id, priority)
-    removals.record(tx, [added.replaced_audio])
-    return Created(added.clip, job, is_new=True)
+    if added.outcome is AddOutcome.ADDED:
+        return Created(added.clip, enqueue_ingest(tx, added.clip.id, priority), is_new=True)
+    merged = merge(added.clip, new, on_conflict, paths)
+    clip = _changed(tx, added.clip, merged.changes)
+    has_other_input = clip.analysis_input != added.clip.analysis_input
+    job = None
+    if added.needs_analysis or has_other_input:
+        job = enqueue_ingest(tx, clip.id, priority)
+        clip = stored.requeue(tx, clip.id)
+        removals.record(tx, [added.replaced_audio])
+    return Created(clip, job, added.needs_analysis, merged.differences)
+
+
+def _changed(tx: Tx, clip: ClipRecord, changes: ClipChanges) -> ClipRecord:
+    """Change a clip, if there are any changes. Raises BadField for too many keys of metadata."""
+    if not changes:
+        return clip
+    after = stored.patch(tx, clip.id, changes)
+    if len(after.metadata) > fields.MAX_META_KEYS:
+        message = f"the clip would have more than {fields.MAX_META_KEYS} keys"
+        raise fields.bad_field("metadata", message)
+    return after
 
 
 def check_content(staged: StagedFile) -> str:
@@ -195,7 +237,8 @@ def get_clip(lib: Library, clip_id: str) -> ClipRecord:
 def update_clip(lib: Library, clip_id: str, changes: Mapping[str, Any]) -> ClipRecord:
     """Change labels and hints (PATCHABLE). After a change of a hint the clip is analyzed again.
 
-    A field without a key stays as it is; None removes a value. Raises BadField, ClipNotFound.
+    A field without a key stays as it is; None removes a value. The same holds for each key of
+    `metadata`. Raises BadField, ClipNotFound.
     """
     tidy = _checked_changes(changes)
     if tidy.get("stack") is not None:
@@ -203,7 +246,7 @@ def update_clip(lib: Library, clip_id: str, changes: Mapping[str, Any]) -> ClipR
             check_stack_belongs(_format_of(file))
     with lib.store.write() as tx:
         before = stored.get(tx, clip_id)
-        after = stored.patch(tx, clip_id, tidy)
+        after = _changed(tx, before, tidy)
         if after.analysis_input == before.analysis_input:
             return after
         enqueue_ingest(tx, clip_id, BULK_PRIORITY)

@@ -103,7 +103,9 @@ def remove_old_jobs(lib: Library) -> int:
 def _with_files(tx: Tx, job: JobRecord) -> JobRecord:
     if job.kind is not JobKind.IMPORT or job.result is None:
         return job
-    has_problems = bool(job.result["failed"] or job.result["absent"])
+    # a result of an earlier version has no conflicts
+    problems = (job.result.get(name) for name in ("failed", "absent", "conflicting"))
+    has_problems = any(problems)
     files = import_files.first(tx, job.id, FIRST_FILES, has_problems=has_problems)
     left_out = max(job.result["total"] - len(files), 0)
     listed: dict[str, Any] = {"files": [asdict(file) for file in files], "files_left_out": left_out}

@@ -1,9 +1,10 @@
 """Forgetting a person: gait identifies people, so that a library must be able to forget them.
 
-One transaction removes the person's label from every clip, and every model that holds persons:
-after it no search and no recognition knows the person. A job fits the models again without them;
-until it is done, whatever needs those models asks the client to wait. Files keep their content and
-their names.
+One transaction removes the person's label from every clip, the name from whatever else names the
+person (`traces`: names and paths of files, metadata, lists of imported files), and every model that
+holds persons: after it no search and no recognition knows the person. A job fits the models again
+without them; until it is done, whatever needs those models asks the client to wait. Files keep
+their content.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import logging
 
 from app.errors import NotFound, Place
 from app.services import fields
+from app.services.clips import traces
 from app.services.library.fitted_models import ModelKind, holds_persons
 from app.services.library.library import Library
 from app.services.training.models import enqueue_fit
@@ -41,7 +43,7 @@ def _forget(tx: Tx, person: str) -> JobRecord:
         raise NotFound(
             "No clip carries this person.", places=[Place("name", "is not in the library")]
         )
-    clips.forget_person(tx, person)
+    traces.remove_name(tx, person, clips.forget_person(tx, person))
     models.remove(tx, _HOLDING_PERSONS)
     return enqueue_fit(tx)
 

@@ -18,6 +18,7 @@ from app.formats.sniff import HEAD_BYTES, is_zip
 from app.services import fields
 from app.services.clips.catalogue import WORKER_DEATHS
 from app.services.imports.manifest_table import ManifestLimits
+from app.services.imports.options import ImportOptions
 from app.services.imports.plan import Plan
 from app.services.imports.register import ImportRun, Progress
 from app.services.imports.skeleton_pairs import pair_skeletons
@@ -44,14 +45,21 @@ TURN_S = 5.0
 the archive's directory took, because each turn reads it again."""
 OWN_PRIORITY = -1_000_000_000
 """The priority of an import that this process does itself: no worker may take it first."""
+OPTIONS = "options"
+"""Member of the payload of an import."""
 WAITING = "waiting for the clips' analyses"
 
 
-def start_import(lib: Library, archive: Readable, filename: str) -> JobRecord:
+def start_import(
+    lib: Library, archive: Readable, filename: str, options: ImportOptions | None = None
+) -> JobRecord:
     """Store a ZIP durably and queue its import.
 
-    Raises EmptyFile, UnknownFormat for what is no ZIP, TooLarge, DiskFull.
+    Raises EmptyFile, UnknownFormat for what is no ZIP, TooLarge, DiskFull, and BadField for bad
+    options.
     """
+    chosen = options or ImportOptions()
+    chosen.check()
     with lib.store.files.stage(archive, max_bytes=lib.settings.max_archive_bytes) as staged:
         with staged.open() as file:
             head = file.read(HEAD_BYTES)
@@ -66,7 +74,10 @@ def start_import(lib: Library, archive: Readable, filename: str) -> JobRecord:
                 NewJob(
                     JobKind.IMPORT,
                     file_sha256=staged.sha256,
-                    payload={"filename": fields.file_name(filename)},
+                    payload={
+                        "filename": fields.file_name(filename),
+                        OPTIONS: chosen.as_payload(),
+                    },
                     priority=IMPORT_PRIORITY,
                     max_attempts=WORKER_DEATHS,
                 ),
@@ -88,7 +99,8 @@ def unpack(
     began = time.monotonic()
     archive = lib.store.files.path(claimed.file_sha256)
     with archive_files(archive, _limits(lib)) as files:
-        run = ImportRun(lib, claimed.lease, _plan(lib, files))
+        options = ImportOptions.of_payload(claimed.payload.get(OPTIONS))
+        run = ImportRun(lib, claimed.lease, _plan(lib, files, options))
         turn = _Turn(lib, max(TURN_S, time.monotonic() - began))
         if run.run(progress, should_stop, turn.is_over):
             run.finish(WAITING)
@@ -96,14 +108,22 @@ def unpack(
             _give_turn(run)
 
 
-def import_path(lib: Library, path: Path, progress: Progress | None = None) -> JobRecord:
+def import_path(
+    lib: Library,
+    path: Path,
+    progress: Progress | None = None,
+    options: ImportOptions | None = None,
+) -> JobRecord:
     """Import a folder, a ZIP or a single file from this machine's disk.
 
     Returns the job of the import after every file was registered. The job ends when a worker has
-    analyzed the clips. Raises NotFound if the path does not exist, and the errors of `unpack`.
+    analyzed the clips. Raises NotFound if the path does not exist, BadField for bad options, and
+    the errors of `unpack`.
     """
+    chosen = options or ImportOptions()
+    chosen.check()
     with _sources(lib, path) as files:
-        plan = _plan(lib, files)
+        plan = _plan(lib, files, chosen)
         run = ImportRun(lib, _own_job(lib, path).lease, plan)
         run.run(progress or (lambda *_: None), lambda: False, lambda: False)
         return run.finish(WAITING)
@@ -169,9 +189,10 @@ def _own_job(lib: Library, path: Path) -> ClaimedJob:
         return claimed
 
 
-def _plan(lib: Library, files: Sequence[SourceFile]) -> Plan:
+def _plan(lib: Library, files: Sequence[SourceFile], options: ImportOptions) -> Plan:
     # A local folder may have more files than an archive may, and one manifest row for each file.
-    return Plan(files, ManifestLimits(max(lib.settings.max_archive_entries, len(files))))
+    rows = max(lib.settings.max_archive_entries, len(files))
+    return Plan(files, ManifestLimits(rows), options)
 
 
 def _limits(lib: Library) -> ArchiveLimits:

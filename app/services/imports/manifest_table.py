@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Protocol
 
 from app.errors import Place, TooLarge, Unreadable
+from app.services.imports.columns import BadColumn, Columns
 
 MANIFEST_NAME = "manifest.csv"
 MAX_BYTES = 64 * 2**20
@@ -48,41 +49,14 @@ class ManifestUsage:
     bytes: int = 0
 
 
-class Columns:
-    """The positions of a manifest's columns. Each manifest has its own object.
-
-    header: the cells of its first line; expected: names of columns to look for; names: those of
-    them that the manifest has.
-    """
-
-    def __init__(self, header: Sequence[str], expected: Collection[str]) -> None:
-        index_of = {name.strip().lower(): index for index, name in enumerate(header)}
-        self._index_of = index_of
-        self.names = tuple(name for name in expected if name in index_of)
-        self._indexes = tuple(index_of[name] for name in self.names)
-
-    def __contains__(self, name: str) -> bool:
-        return name in self._index_of
-
-    def cell(self, cells: Sequence[str], name: str) -> str:
-        """The row's cell in a column; empty if there is no such column or the row is shorter."""
-        index = self._index_of.get(name, len(cells))
-        return cells[index].strip() if index < len(cells) else ""
-
-    def named_cells(self, cells: Sequence[str]) -> tuple[str, ...]:
-        """The row's cells in the columns `names`, in that order."""
-        count = len(cells)
-        return tuple(cells[i].strip() if i < count else "" for i in self._indexes)
-
-
 def read_rows(
     content: Readable, usage: ManifestUsage, expected: Collection[str]
 ) -> Iterator[tuple[Columns, int, list[str]]]:
     """The rows that have a path: the columns of the manifest, the line, and the row's cells.
 
-    usage: counts the rows and bytes; expected: names of columns to look for. Raises Unreadable
-    if the content is not a table with a column of paths, and TooLarge beyond a limit; both name
-    the line.
+    usage: counts the rows and bytes; expected: names of fields to look for. Raises Unreadable
+    if the content is not a table with a column of paths, or if the name of a column cannot be
+    used, and TooLarge beyond a limit; both name the line.
     """
     lines = _Lines(content, usage)
     reader = csv.reader(lines, delimiter=lines.separator(), skipinitialspace=True, strict=True)
@@ -99,7 +73,7 @@ def read_rows(
                     break
             elif columns.cell(cells, "path"):
                 yield columns, line, cells
-    except csv.Error as problem:
+    except (csv.Error, BadColumn) as problem:
         raise _unreadable(max(reader.line_num, 1), str(problem)) from problem
     if columns is None or "path" not in columns:
         raise _unreadable(1, "the first line must name the columns, and one must be `path`")

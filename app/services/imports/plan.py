@@ -12,10 +12,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from app.errors import BadContent, KinedexError, Place, TooLarge, Unreadable
-from app.services.fields import MAX_PATH
+from app.services.fields import MAX_PATH, bad_field
+from app.services.fields import path as clip_path
 from app.services.imports.manifest import Manifest, ManifestRow
 from app.services.imports.manifest_table import MANIFEST_NAME, ManifestLimits
+from app.services.imports.options import ImportOptions
 from app.services.imports.skeleton_pairs import pair_skeletons
+from app.services.imports.skipped import is_called_motion
 from app.services.imports.sources import SourceFile
 
 MAX_ABSENT_LISTED = 100
@@ -36,17 +39,26 @@ class Plan:
     """What an import does with its files.
 
     motions: the files that may become clips; absent: the problems of the first
-    MAX_ABSENT_LISTED paths
-    that a manifest names and that are missing; absent_count: how many paths are missing.
+    MAX_ABSENT_LISTED paths that a manifest names and that are missing; absent_count: how many paths
+    are missing; paths: of the motions, as clips have them; unmatched: how many motions the pattern
+    of the options does not match.
     """
 
-    def __init__(self, files: Iterable[SourceFile], limits: ManifestLimits) -> None:
+    def __init__(
+        self,
+        files: Iterable[SourceFile],
+        limits: ManifestLimits,
+        options: ImportOptions | None = None,
+    ) -> None:
         """Sort the files into motions and their companions.
 
-        Raises Unreadable and TooLarge for a bad manifest, and a manifest file's own problem.
+        Raises Unreadable and TooLarge for a bad manifest, a manifest file's own problem, and
+        BadField for bad options, or a pattern that matches no motion.
         """
+        self.options = options or ImportOptions()
         self._by_path = {file.path: file for file in _with_unique_paths(files)}
-        self._manifest = _read_manifests(self._by_path.values(), limits)
+        self._manifest = Manifest(limits, self.options)
+        _read_manifests(self._manifest, self._by_path.values())
         self._skeletons = pair_skeletons(self._by_path)
         recordings = self._manifest.recordings()
         taken = {*self._skeletons.values(), *recordings}
@@ -55,11 +67,20 @@ class Plan:
             for file in self._by_path.values()
             if not _is_manifest(file) and file.path not in taken
         )
+        self.paths = frozenset(filter(None, map(_clip_path, self.motions)))
+        self.unmatched = self._count_unmatched()
         absent = {path: line for path, line in self._manifest.named() if path not in self._by_path}
         self.absent_count = len(absent)
         self.absent = {
             path: _absent(path, absent[path]) for path in heapq.nsmallest(MAX_ABSENT_LISTED, absent)
         }
+
+    def _count_unmatched(self) -> int:
+        motions = [file.path for file in self.motions if is_called_motion(file.path)]
+        matched = sum(map(self._manifest.is_matched, motions))
+        if motions and not matched:
+            raise bad_field("labels", f"the pattern matches no file; a path is {motions[0]!r}")
+        return len(motions) - matched
 
     def item(self, motion: SourceFile) -> Item:
         """A motion with its manifest row, skeleton and recording."""
@@ -73,13 +94,15 @@ class Plan:
         )
 
 
-def _read_manifests(files: Iterable[SourceFile], limits: ManifestLimits) -> Manifest:
-    """All manifests among the files. A bad manifest fails the whole import."""
-    manifest = Manifest(limits)
+def _read_manifests(manifest: Manifest, files: Iterable[SourceFile]) -> None:
+    """Read all manifests among the files. A bad manifest fails the whole import."""
     for file in files:
         if _is_manifest(file):
             _read_manifest(manifest, file)
-    return manifest
+
+
+def _clip_path(file: SourceFile) -> str | None:
+    return None if file.problem is not None else clip_path(file.path)
 
 
 def _read_manifest(manifest: Manifest, file: SourceFile) -> None:

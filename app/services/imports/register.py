@@ -13,13 +13,16 @@ from contextlib import ExitStack
 from app.errors import Canceled, KinedexError, LeaseLost, StorageError
 from app.formats.sniff import HEAD_BYTES, TAIL_BYTES, sniff
 from app.services import fields
-from app.services.clips.catalogue import BULK_PRIORITY, add, check_content, keep
+from app.services.clips.catalogue import BULK_PRIORITY, Created, add, check_content, keep
+from app.services.clips.merging import OnConflict
 from app.services.clips.recordings import attached
+from app.services.imports.keyposes import put_keyposes
 from app.services.imports.plan import Item, Plan
+from app.services.imports.skipped import is_skipped, refuse_companion
 from app.services.imports.sources import SourceFile
 from app.services.library.library import Library
-from app.store.clips import keypose_annotations
-from app.store.clips.record import ClipState, NewClip
+from app.store.clips import repository as clips
+from app.store.clips.record import ClipState, Difference, NewClip
 from app.store.database.engine import Tx
 from app.store.files.files import Readable, StagedFile
 from app.store.jobs import imports as stored
@@ -92,7 +95,13 @@ class ImportRun:
                 if path not in self._recorded
             ]
             stored.add_entries(tx, self.lease.job_id, absent)
-            return stored.wait_for_clips(tx, self.lease, detail, absent=self.plan.absent_count)
+            return stored.wait_for_clips(
+                tx,
+                self.lease,
+                detail,
+                absent=self.plan.absent_count,
+                unmatched=self.plan.unmatched,
+            )
 
     def record_problems(self) -> None:
         """Record the problems that were not recorded yet. Raises LeaseLost, Canceled."""
@@ -125,7 +134,8 @@ class ImportRun:
             self._add_problem(item.file.path, problem)
 
     def _add_problem(self, path: str, problem: KinedexError) -> None:
-        self._problems.append(NewEntry(path, ImportOutcome.FAILED, problem=problem.as_problem()))
+        outcome = ImportOutcome.SKIPPED if is_skipped(path, problem) else ImportOutcome.FAILED
+        self._problems.append(NewEntry(path, outcome, problem=problem.as_problem()))
         waited = time.monotonic() - self._recorded_at
         if len(self._problems) >= MAX_PROBLEMS_TOGETHER or waited >= RECORD_AFTER_S:
             self.record_problems()
@@ -134,31 +144,60 @@ class ImportRun:
         lib, row, path = self.lib, item.row, item.file.path
         with ExitStack() as files:
             staged = _stage(lib, files, content)
-            is_amc = check_content(staged) == "amc"
-            companion = _staged(lib, files, item.skeleton if is_amc else None)
+            format = check_content(staged)
+            refuse_companion(path, format)
+            companion = _staged(lib, files, item.skeleton if format == "amc" else None)
             recording = _staged(lib, files, item.sound)
             new = NewClip(
                 sha256=staged.sha256,
                 file_name=fields.file_name(path),
                 file_size=staged.size,
-                labels=row.labels,
-                hints=row.hints,
+                labels=row.values.labels,
+                hints=row.values.hints,
                 skeleton_sha256=None if companion is None else companion.sha256,
                 audio=None if recording is None else attached(recording, row.audio or ""),
+                path=fields.path(path),
+                sent=row.values.sent,
             )
             with lib.store.write() as tx:
                 keep(staged, companion, recording)
-                created = add(tx, new, self._priority())
-                if created.is_new and row.keyposes is not None:
-                    keypose_annotations.put(tx, created.clip.id, row.keyposes)
-                exists = not created.is_new and created.clip.state is ClipState.READY
-                outcome = ImportOutcome.EXISTS if exists else ImportOutcome.QUEUED
-                self._record(tx, NewEntry(path, outcome, clip_id=created.clip.id))
+                self._record(tx, self._added(tx, new, row.keyposes, path))
         self._problems = []
+
+    def _added(
+        self, tx: Tx, new: NewClip, keyposes: tuple[float, ...] | None, path: str
+    ) -> NewEntry:
+        """Add the clip of a file, or merge its labels with those of the clip that exists."""
+        is_twin = self._is_recorded(tx, new)
+        # If two files of an import have the same content, the labels of the first one count: else
+        # each import would change them twice.
+        policy = OnConflict.KEEP if is_twin else self.plan.options.on_conflict
+        created = add(tx, new, self._priority(), policy, self.plan.paths)
+        clip, differences = created.clip, created.differences
+        if keyposes is not None:
+            found = put_keyposes(tx, clip, keyposes, policy)
+            differences += () if created.is_new else found
+        outcome = _outcome(created, differences, is_twin)
+        return NewEntry(path, outcome, clip_id=clip.id, differences=differences)
+
+    def _is_recorded(self, tx: Tx, new: NewClip) -> bool:
+        """Whether an earlier file of this import has the same content."""
+        existing = clips.find_by_content(tx, new.content_key)
+        return existing is not None and stored.has_clip(tx, self.lease.job_id, existing.id)
 
     def _priority(self) -> int:
         """The priority of the next analysis. A large import must not delay a small one."""
         return BULK_PRIORITY + min((self.done // FIRST_CLIPS).bit_length(), MAX_PRIORITY_STEPS)
+
+
+def _outcome(created: Created, differences: tuple[Difference, ...], is_twin: bool) -> ImportOutcome:
+    """The outcome of a stored file; is_twin: an earlier file of the import has its content."""
+    if not all(one.applied for one in differences):
+        return ImportOutcome.CONFLICTING
+    if differences:
+        return ImportOutcome.UPDATED
+    is_ready = not created.is_new and created.clip.state is ClipState.READY
+    return ImportOutcome.UNCHANGED if is_ready or is_twin else ImportOutcome.QUEUED
 
 
 def checked_content(content: Readable) -> Readable:

@@ -5,14 +5,38 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from sqlalchemy import ColumnElement, Select, and_, or_, select
+from sqlalchemy import ColumnElement, Select, and_, func, or_, select
 
 from app.store.clips.record import ClipState
-from app.store.database.tables import clip_words, clips
+from app.store.database.tables import clip_metadata, clip_words, clips
 
 _LABELS = ("person", "task", "license", "source")
 """Labels that are columns of the table `clips`. ClipFilter has two fields for each: NAME and
 not_NAME."""
+
+
+@dataclass(frozen=True, slots=True)
+class MetadataCondition:
+    """A condition on one key of the metadata. A clip without the key does not meet it.
+
+    texts: the value must have one of these texts (`metadata_values.as_text`); none: any text;
+    minimum, maximum: the value must be a number between them, both ends included; is_negated: a
+    clip meets the condition if it does not meet it as it stands, so a clip without the key does.
+    """
+
+    key: str
+    texts: tuple[str, ...] = ()
+    minimum: float | None = None
+    maximum: float | None = None
+    is_negated: bool = False
+
+    def accepts(self, text: str, number: float | None) -> bool:
+        """Whether a value passes; text: of the value; number: None if it is none."""
+        if self.texts and text not in self.texts:
+            return False
+        if self.minimum is not None and (number is None or number < self.minimum):
+            return False
+        return self.maximum is None or (number is not None and number <= self.maximum)
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,8 +45,9 @@ class ClipFilter:
 
     A tuple is true if the clip has any of its values. A tuple whose name begins with `not_` is
     true if the clip has none of its values; a clip without the label passes. An empty tuple and
-    None are no condition. q: a part of the name, in upper or lower case; min_duration,
-    max_duration: seconds, both ends included.
+    None are no condition. folder: the clip's file was in the folder or below it; q: a part of the
+    name, the path or a text of the metadata, in upper or lower case; min_duration, max_duration:
+    seconds, both ends included.
     """
 
     person: tuple[str, ...] = ()
@@ -35,6 +60,9 @@ class ClipFilter:
     not_word: tuple[str, ...] = ()
     not_license: tuple[str, ...] = ()
     not_source: tuple[str, ...] = ()
+    folder: tuple[str, ...] = ()
+    not_folder: tuple[str, ...] = ()
+    metadata: tuple[MetadataCondition, ...] = ()
     state: tuple[ClipState, ...] = ()
     min_duration: float | None = None
     max_duration: float | None = None
@@ -57,8 +85,41 @@ def condition(filter: ClipFilter) -> ColumnElement[bool]:
         terms.append(clips.c.id.not_in(_carriers(filter.not_word)))
     if filter.q:
         # autoescape: % and _ in `q` are plain characters, not wildcards.
-        terms.append(clips.c.name_folded.contains(filter.q.casefold(), autoescape=True))
-    return and_(True, *terms)
+        terms.append(clips.c.searched.contains(filter.q.casefold(), autoescape=True))
+    return and_(True, *terms, *_folder_terms(filter), *map(_metadata_term, filter.metadata))
+
+
+def is_in_folder(folder: str, parent: str) -> bool:
+    """Whether a folder is `parent` or below it."""
+    return folder == parent or folder.startswith(f"{parent}/")
+
+
+def _folder_terms(filter: ClipFilter) -> Iterator[ColumnElement[bool]]:
+    if filter.folder:
+        yield or_(*map(in_folder, filter.folder))
+    if filter.not_folder:
+        # a clip without a path is in no folder
+        yield or_(clips.c.folder.is_(None), ~or_(*map(in_folder, filter.not_folder)))
+
+
+def in_folder(parent: str) -> ColumnElement[bool]:
+    """The condition for clips in a folder or below it; compare `is_in_folder`."""
+    # Not LIKE, which takes no account of upper and lower case in SQLite.
+    begins = func.substr(clips.c.folder, 1, len(parent) + 1) == f"{parent}/"
+    return or_(clips.c.folder == parent, begins)
+
+
+def _metadata_term(condition: MetadataCondition) -> ColumnElement[bool]:
+    column = clip_metadata.c
+    terms = [column.key == condition.key]
+    if condition.texts:
+        terms.append(column.text.in_(condition.texts))
+    if condition.minimum is not None:
+        terms.append(column.number >= condition.minimum)
+    if condition.maximum is not None:
+        terms.append(column.number <= condition.maximum)
+    having = select(column.clip_id).where(*terms)
+    return clips.c.id.not_in(having) if condition.is_negated else clips.c.id.in_(having)
 
 
 def _label_terms(filter: ClipFilter) -> Iterator[ColumnElement[bool]]:

@@ -16,10 +16,11 @@ from typing import Any
 from numpy.typing import NDArray
 from sqlalchemy import and_, bindparam, func, select
 
+from app.store.clips.metadata_values import MetadataValue, from_text
 from app.store.clips.record import ClipState
 from app.store.database.blobs import from_blob
 from app.store.database.engine import Tx
-from app.store.database.tables import clip_arrays, clip_words, clips
+from app.store.database.tables import clip_arrays, clip_metadata, clip_words, clips
 
 BATCH = 5000
 """Clips in one batch."""
@@ -27,6 +28,22 @@ BATCH = 5000
 _WORDS = (
     select(func.aggregate_strings(clip_words.c.word, " "))
     .where(clip_words.c.clip_id == clips.c.id)
+    .scalar_subquery()
+)
+# Control characters, because no key and no value holds any.
+_BETWEEN_PARTS, _BETWEEN_VALUES = "\x1f", "\x1e"
+_METADATA = (
+    select(
+        func.aggregate_strings(
+            clip_metadata.c.key
+            + _BETWEEN_PARTS
+            + clip_metadata.c.kind
+            + _BETWEEN_PARTS
+            + clip_metadata.c.text,
+            _BETWEEN_VALUES,
+        )
+    )
+    .where(clip_metadata.c.clip_id == clips.c.id)
     .scalar_subquery()
 )
 _CLIPS = (
@@ -39,6 +56,8 @@ _CLIPS = (
         clips.c.source,
         clips.c.duration,
         _WORDS,
+        clips.c.folder,
+        _METADATA,
         clip_arrays.c.dtype,
         clip_arrays.c.shape,
         clip_arrays.c.data,
@@ -55,12 +74,17 @@ _CLIPS = (
 )
 
 
+IndexedMetadata = tuple[tuple[str, MetadataValue], ...]
+"""The keys of a clip's metadata, each with its value."""
+
+
 @dataclass(frozen=True, slots=True)
 class IndexedClip:
     """The data of a clip that a search needs to rank and filter it.
 
     duration: seconds; array: the requested array, read-only, None if the clip does not have it
-    (an earlier version of the analysis did not compute it).
+    (an earlier version of the analysis did not compute it); folder: None if the clip came without
+    a path.
     """
 
     id: str
@@ -72,6 +96,8 @@ class IndexedClip:
     duration: float
     words: frozenset[str]
     array: NDArray[Any] | None
+    folder: str | None = None
+    metadata: IndexedMetadata = ()
 
 
 def changed_since(tx: Tx, since: int, array: str) -> Iterator[list[IndexedClip]]:
@@ -86,7 +112,8 @@ def changed_since(tx: Tx, since: int, array: str) -> Iterator[list[IndexedClip]]
 
 
 def _indexed(row: Sequence[Any]) -> IndexedClip:
-    clip_id, state, person, task, license_, source, duration, words, dtype, shape, data = row
+    clip_id, state, *rest, folder, metadata, dtype, shape, data = row
+    person, task, license_, source, duration, words = rest
     return IndexedClip(
         clip_id,
         state == ClipState.READY,
@@ -97,6 +124,8 @@ def _indexed(row: Sequence[Any]) -> IndexedClip:
         duration or 0.0,
         _word_set(words or ""),
         None if data is None else from_blob(dtype, shape, data),
+        folder,
+        _metadata_of(metadata or ""),
     )
 
 
@@ -104,3 +133,13 @@ def _indexed(row: Sequence[Any]) -> IndexedClip:
 def _word_set(text: str) -> frozenset[str]:
     # Cached: many clips have the same words, and equal texts then share one object.
     return frozenset(text.split(" ")) if text else frozenset()
+
+
+@lru_cache(maxsize=10_000)
+def _metadata_of(text: str) -> IndexedMetadata:
+    return tuple(map(_key_and_value, text.split(_BETWEEN_VALUES))) if text else ()
+
+
+def _key_and_value(text: str) -> tuple[str, MetadataValue]:
+    key, kind, value = text.split(_BETWEEN_PARTS)
+    return key, from_text(kind, value)

@@ -11,10 +11,9 @@ from app.errors import BadField, Place
 from app.store.clips import repository as clip_repository
 from app.store.clips.filter import ClipFilter, condition
 from app.store.clips.record import REANALYSIS_OPEN, ClipRecord, ClipState, Reanalysis
-from app.store.clips.rows import to_record
 from app.store.database.engine import Tx
 from app.store.database.paging import Page, Position, Value, after, read_cursor, write_cursor
-from app.store.database.tables import clips
+from app.store.database.tables import clip_metadata, clips
 
 DEFAULT_SORT = "-created_at"
 
@@ -63,6 +62,20 @@ def count_clips(tx: Tx, filter: ClipFilter) -> int:
 def list_ids(tx: Tx, filter: ClipFilter) -> tuple[str, ...]:
     """The ids of all clips that pass the filter."""
     return tuple(tx.execute(select(clips.c.id).where(condition(filter))).scalars())
+
+
+def ids_by_path(tx: Tx, filter: ClipFilter) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The ids of all clips that pass the filter, sorted by path, and the keys of their metadata."""
+    by_path = func.coalesce(clips.c.path, clips.c.file_name)
+    query = select(clips.c.id).where(condition(filter)).order_by(by_path, clips.c.id)
+    keys = (
+        select(clip_metadata.c.key)
+        .join(clips, clips.c.id == clip_metadata.c.clip_id)
+        .where(condition(filter))
+        .distinct()
+        .order_by(clip_metadata.c.key)
+    )
+    return tuple(tx.execute(query).scalars()), tuple(tx.execute(keys).scalars())
 
 
 def list_outdated_ids(tx: Tx, version: int) -> tuple[str, ...]:
@@ -124,8 +137,7 @@ def _ordered(
 def _page(tx: Tx, query: Select[tuple[object, ...]], sort: str, limit: int) -> Page[ClipRecord]:
     rows = tx.execute(query).mappings().all()
     shown = rows[:limit]
-    words = clip_repository.words_of(tx, [row["id"] for row in shown])
-    items = tuple(to_record(row, words.get(row["id"], ())) for row in shown)
+    items = tuple(clip_repository.to_records(tx, shown))
     if len(rows) <= limit or not shown:
         return Page(items, None)
     return Page(items, write_cursor(sort, Position(shown[-1]["sorted_by"], shown[-1]["id"])))

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 from enum import StrEnum
 from typing import Any
+
+from app.store.clips.metadata_values import Metadata
 
 
 class ClipState(StrEnum):
@@ -54,7 +56,8 @@ class ClipLabels:
     """The name of a clip and what people say about it; searches filter by these labels.
 
     words: in lower case, without repetition. The callers of the store normalize all labels. A new
-    field here needs a column of the same name in the table `clips` (words have their own table).
+    field here needs a column of the same name in the table `clips` (words and metadata have their
+    own tables). metadata: free values by key.
     """
 
     name: str
@@ -63,6 +66,7 @@ class ClipLabels:
     words: tuple[str, ...] = ()
     license: str | None = None
     source: str | None = None
+    metadata: Metadata = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +106,24 @@ class AttachedAudio:
     size: int = 0
 
 
+META = "meta."
+"""Begins the name of one key of the metadata, where labels are named one by one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """A label, hint or key of the metadata (`meta.KEY`) that came with content that is stored.
+
+    stored: the value in the library before; sent: the other value that came now; None is no value;
+    applied: whether `sent` has replaced `stored`.
+    """
+
+    field: str
+    stored: Any
+    sent: Any
+    applied: bool
+
+
 AnalysisInput = tuple[AnalysisHints, str | None]
 """The input of an analysis besides the motion file: the hints, and the recording's SHA-256."""
 
@@ -112,6 +134,9 @@ class ClipRecord(ClipLabels):
 
     The results of the analysis are None (or empty) until the clip is ready.
 
+    path: where the file was, relative to its import, with /; None if it came without a path;
+    imported: the labels and hints that came with the file last, by name (`meta.KEY` for a key of
+    the metadata): a label with another value was edited since.
     sha256: of the bytes of the motion file; content_key: unique for each content (sha256, or with
     a skeleton file a hash of both); roles: joint name by role; durations in seconds, rates in Hz;
     error: an RFC 9457 problem; audio_offset: the time of the motion (s) at which the recording
@@ -123,6 +148,8 @@ class ClipRecord(ClipLabels):
 
     id: str
     state: ClipState
+    path: str | None
+    imported: Mapping[str, Any]
     format: str | None
     sha256: str
     frames: int | None
@@ -147,6 +174,19 @@ class ClipRecord(ClipLabels):
     reanalysis: Reanalysis | None
     is_changed: bool
     changed_version: int
+
+    @property
+    def folder(self) -> str | None:
+        """The path without its last part; "" if the file was in no folder."""
+        return folder_of(self.path)
+
+    @property
+    def full_name(self) -> str:
+        """The name with the folder of the file before it, for people.
+
+        Many files of a library may have the same name in other folders.
+        """
+        return f"{self.folder}/{self.name}" if self.folder else self.name
 
     @property
     def audio_sha256(self) -> str | None:
@@ -183,7 +223,11 @@ class ClipRecord(ClipLabels):
 
 @dataclass(frozen=True, slots=True)
 class NewClip:
-    """A clip before its analysis; the caller has normalized the labels."""
+    """A clip before its analysis; the caller has normalized the labels.
+
+    path: as in `ClipRecord`; sent: the names of the labels and hints that came with the file
+    (`meta.KEY` for a key of the metadata), also of those without a value.
+    """
 
     sha256: str
     file_name: str
@@ -192,6 +236,8 @@ class NewClip:
     hints: AnalysisHints = AnalysisHints()
     skeleton_sha256: str | None = None
     audio: AttachedAudio | None = None
+    path: str | None = None
+    sent: frozenset[str] = frozenset()
 
     @property
     def content_key(self) -> str:
@@ -226,7 +272,13 @@ class ClipFacts:
 
 ClipChanges = Mapping[str, Any]
 """New values by field name: fields of ClipLabels and AnalysisHints, and `audio` (AttachedAudio or
-None). A field that is absent keeps its value."""
+None), `path` and `imported`. A field that is absent keeps its value. `metadata` has the keys that
+change (None removes a key); None removes all keys."""
+
+
+def folder_of(path: str | None) -> str | None:
+    """A path without its last part; "" if it has only one part, None without a path."""
+    return None if path is None else path.rpartition("/")[0]
 
 
 class AddOutcome(StrEnum):

@@ -6,9 +6,10 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from sqlalchemy import bindparam, delete, insert, select, update
+from sqlalchemy import RowMapping, bindparam, delete, insert, select, update
 
 from app.errors import ClipNotFound, Place
+from app.store.clips import clip_metadata
 from app.store.clips import versions as library
 from app.store.clips.record import (
     AUDIO_HINTS,
@@ -23,11 +24,20 @@ from app.store.clips.record import (
     NewClip,
     Reanalysis,
 )
-from app.store.clips.rows import changed_input, client_fields, to_columns, to_record
+from app.store.clips.rows import (
+    changed_input,
+    changed_metadata,
+    client_fields,
+    searched_text,
+    to_columns,
+    to_record,
+)
 from app.store.database.engine import Tx
 from app.store.database.ids import new_id, utc_now
 from app.store.database.tables import clip_words, clips
 
+_SEARCHED = frozenset({"name", "path", "metadata"})
+"""The fields that `rows.searched_text` takes."""
 IDS_PER_QUERY = 500
 """A limit, because databases limit the number of parameters of one statement."""
 
@@ -95,7 +105,12 @@ def patch(tx: Tx, clip_id: str, changes: ClipChanges) -> ClipRecord:
         values["is_changed"] = True
     if "words" in changes:
         _set_words(tx, clip_id, changes["words"])
-    if before.state is ClipState.READY:
+    if _SEARCHED & changes.keys():
+        metadata = changed_metadata(before.metadata, changes)
+        clip_metadata.put(tx, clip_id, metadata)
+        name, path = changes.get("name", before.name), changes.get("path", before.path)
+        values["searched"] = searched_text(name, path, metadata)
+    if before.state is ClipState.READY and changes.keys() != {"imported"}:  # no search reads it
         values["changed_version"] = library.bump(tx)
     if values:
         tx.execute(update(clips).where(clips.c.id == clip_id).values(values))
@@ -202,12 +217,14 @@ def _insert(tx: Tx, new: NewClip) -> ClipRecord:
         "file_size": new.file_size,
         "skeleton_sha256": new.skeleton_sha256,
         "content_key": new.content_key,
+        "searched": searched_text(new.labels.name, new.path, new.labels.metadata),
         "state": ClipState.QUEUED.value,
         "changed_version": 0,
         "created_at": utc_now(),
     }
     tx.execute(_ADD, values)
     _add_words(tx, clip_id, new.labels.words)
+    clip_metadata.add(tx, clip_id, new.labels.metadata)
     return get(tx, clip_id)
 
 
@@ -271,8 +288,17 @@ def _not_found(clip_id: str) -> ClipNotFound:
 
 def _load(tx: Tx, clip_ids: Collection[str]) -> list[ClipRecord]:
     rows = tx.execute(_SOME, {"ids": list(clip_ids)}).mappings().all()
-    words = words_of(tx, clip_ids)
-    return [to_record(row, words.get(row["id"], ())) for row in rows]
+    return to_records(tx, rows)
+
+
+def to_records(tx: Tx, rows: Sequence[RowMapping]) -> list[ClipRecord]:
+    """Rows of `clips` as records, with what other tables hold of them."""
+    ids = [row["id"] for row in rows]
+    words, metadata = words_of(tx, ids), clip_metadata.get_many(tx, ids)
+    return [
+        to_record(row, words.get(i, ()), metadata.get(i, {}))
+        for i, row in zip(ids, rows, strict=True)
+    ]
 
 
 def words_of(tx: Tx, clip_ids: Collection[str]) -> dict[str, tuple[str, ...]]:

@@ -12,7 +12,9 @@ from typing import Any
 
 from sqlalchemy import RowMapping
 
+from app.store.clips.metadata_values import Metadata
 from app.store.clips.record import (
+    META,
     AnalysisHints,
     AnalysisInput,
     AttachedAudio,
@@ -23,33 +25,66 @@ from app.store.clips.record import (
     ClipWarning,
     NewClip,
     Reanalysis,
+    folder_of,
 )
 from app.store.database.tables import clips
 
+IN_OTHER_TABLES = ("words", "metadata")
+"""Labels that are not columns of the table `clips`."""
 _LABELS = frozenset(field.name for field in fields(ClipLabels))
 _HINT_COLUMNS = {field.name: f"{field.name}_override" for field in fields(AnalysisHints)}
 _AUDIO_COLUMNS = {field.name: f"audio_{field.name}" for field in fields(AttachedAudio)}
 _RECORD_COLUMNS = tuple(field.name for field in fields(ClipRecord) if field.name in clips.c)
+_AS_THEY_ARE = _LABELS - set(IN_OTHER_TABLES) | {"imported"}
 
 
 def client_fields(new: NewClip) -> dict[str, Any]:
-    """Labels, hints and recording of a new clip, by field name as in `ClipChanges`."""
-    return {**_values(new.labels), **_values(new.hints), "audio": new.audio}
+    """What is stored of a new clip, by field name as in `ClipChanges`."""
+    return {
+        **_values(new.labels),
+        **_values(new.hints),
+        "audio": new.audio,
+        "path": new.path,
+        "imported": sent_values(new),
+    }
+
+
+def sent_values(new: NewClip) -> dict[str, Any]:
+    """The labels and hints that came with a file, by name: see `NewClip.sent`."""
+    every = flat(new.labels, new.hints)
+    return {name: every.get(name) for name in sorted(new.sent)}
+
+
+def flat(labels: ClipLabels, hints: AnalysisHints) -> dict[str, Any]:
+    """All labels and hints by name, each key of the metadata as `meta.KEY`, in JSON's types.
+
+    An empty list or object is None: there is no value.
+    """
+    values = {**_values(labels), **_values(hints)}
+    metadata: Metadata = values.pop("metadata")
+    plain = {name: _plain(value) for name, value in values.items()}
+    return plain | {META + key: value for key, value in metadata.items()}
+
+
+def _plain(value: Any) -> Any:
+    return (list(value) if isinstance(value, tuple) else value) or None
 
 
 def to_columns(changes: ClipChanges) -> dict[str, Any]:
-    """Column values for these changes, without the words, which have their own table.
+    """Column values for these changes, without those in IN_OTHER_TABLES.
 
-    Raises KeyError for a name that is not a label, a hint or `audio`.
+    Raises KeyError for an unknown name.
     """
     columns: dict[str, Any] = {}
     for name, value in changes.items():
         if name == "audio":
             columns |= _audio_columns(value)
-        elif name not in _LABELS:
-            columns[_HINT_COLUMNS[name]] = value
-        elif name != "words":
+        elif name == "path":
+            columns |= {"path": value, "folder": folder_of(value)}
+        elif name in _AS_THEY_ARE:
             columns[name] = value
+        elif name not in IN_OTHER_TABLES:
+            columns[_HINT_COLUMNS[name]] = value
     if "name" in columns:
         columns["name_folded"] = columns["name"].casefold()
     return columns
@@ -62,11 +97,27 @@ def changed_input(before: ClipRecord, changes: ClipChanges) -> AnalysisInput:
     return replace(before.hints, **hints), None if audio is None else audio.sha256
 
 
-def to_record(row: RowMapping, words: tuple[str, ...]) -> ClipRecord:
-    """A row of `clips` and the clip's words as a record."""
+def changed_metadata(before: Metadata, changes: ClipChanges) -> Metadata:
+    """The metadata of the clip after the changes."""
+    if "metadata" not in changes:
+        return before
+    changed = {**before, **changes["metadata"]} if changes["metadata"] is not None else {}
+    return {key: value for key, value in changed.items() if value is not None}
+
+
+def searched_text(name: str, path: str | None, metadata: Metadata) -> str:
+    """The text in which a list looks for a part of the name, the path or the metadata."""
+    texts = [name, path or "", *(value for value in metadata.values() if isinstance(value, str))]
+    return "\n".join(texts).casefold()
+
+
+def to_record(row: RowMapping, words: tuple[str, ...], metadata: Metadata) -> ClipRecord:
+    """A row of `clips`, the clip's words and its metadata as a record."""
     values: dict[str, Any] = {name: row[name] for name in _RECORD_COLUMNS}
     values |= {
         "words": words,
+        "metadata": metadata,
+        "imported": row["imported"] or {},
         "state": ClipState(row["state"]),
         "roles": dict(row["roles"] or {}),
         "missing_roles": tuple(row["missing_roles"] or ()),

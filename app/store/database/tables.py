@@ -95,6 +95,13 @@ clips = Table(
     Column("audio_size", BigInteger),
     Column("name", String, nullable=False),
     Column("name_folded", String, nullable=False, index=True),
+    Column("path", String),
+    # The path without its last part; "" for a file that was in no folder.
+    Column("folder", String, index=True),
+    # The name, the path and the texts of the metadata, folded, one a line: see `rows`.
+    Column("searched", String, nullable=False, server_default=""),
+    # The labels and hints that came with the file last: see `ClipRecord.imported`.
+    _json("imported"),
     Column("state", String, nullable=False, index=True),
     Column("format", String),
     Column("person", String, index=True),
@@ -133,6 +140,20 @@ clip_words = Table(
     _clip_key(primary_key=True),
     Column("word", String, primary_key=True, index=True),
     Column("position", Integer, nullable=False),
+)
+
+clip_metadata = Table(
+    "clip_metadata",
+    metadata,
+    _clip_key(primary_key=True),
+    Column("key", String, primary_key=True),
+    Column("kind", String, nullable=False),
+    Column("text", String, nullable=False),
+    # Only of a value that is a number.
+    Column("number", Float),
+    # With all columns that filters and counts read, so that they read no rows of the table.
+    Index(None, "key", "text", "kind", "clip_id"),
+    Index(None, "key", "number", "kind", "clip_id"),
 )
 
 tombstones = Table(
@@ -204,6 +225,8 @@ import_entries = Table(
     Column("outcome", String, nullable=False),
     Column("clip_id", String, ForeignKey("clips.id", ondelete="SET NULL"), index=True),
     _json("problem"),
+    # The labels and hints that differed from those of the stored clip: see `record.Difference`.
+    _json("differences"),
 )
 
 models = Table(

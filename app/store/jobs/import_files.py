@@ -6,11 +6,12 @@ clips. So a clip that was deleted later has the outcome `deleted`.
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
-from sqlalchemy import RowMapping, Select, case, func, select
+from sqlalchemy import RowMapping, Select, String, case, cast, func, select
 
 from app.store.clips.record import ClipState
 from app.store.database.engine import Tx
@@ -25,10 +26,16 @@ class ImportOutcome(StrEnum):
 
     QUEUED = "queued"
     """The file was stored as a clip, which was queued for its analysis."""
-    EXISTS = "exists"
-    """The library already had the same content."""
+    UPDATED = "updated"
+    """The library already had the same content; labels that came with the file were applied."""
+    UNCHANGED = "unchanged"
+    """The library already had the same content with the same labels."""
+    CONFLICTING = "conflicting"
+    """The library already had the same content; a label that came with the file was not applied."""
     FAILED = "failed"
     """The file was not stored; `problem` says why."""
+    SKIPPED = "skipped"
+    """The file is not a motion; `problem` says why."""
     ABSENT = "absent"
     """A manifest names the file, but the archive does not contain it."""
 
@@ -42,28 +49,41 @@ class FileOutcome(StrEnum):
     """Its clip is being analyzed."""
     READY = "ready"
     """Its clip can be searched."""
-    EXISTS = "exists"
-    """The library had the same content before the import."""
+    UPDATED = "updated"
+    """The library had the same content before the import; other labels that came were applied."""
+    UNCHANGED = "unchanged"
+    """The library had the same content, with the same labels, before the import."""
+    CONFLICTING = "conflicting"
+    """The library had the same content before the import; a label that came differs from the
+    stored one, and was not applied because somebody edited the stored one."""
     FAILED = "failed"
     """It did not become a clip, or its clip cannot be analyzed."""
+    SKIPPED = "skipped"
+    """It is not a motion."""
     DELETED = "deleted"
     """Its clip was deleted later."""
     ABSENT = "absent"
     """A manifest names the file, but the archive does not contain it."""
 
 
-PROBLEMS = (FileOutcome.FAILED, FileOutcome.ABSENT)
+PROBLEMS = (FileOutcome.FAILED, FileOutcome.ABSENT, FileOutcome.CONFLICTING)
 """Outcomes that the owner of the files should look at."""
 
 
 @dataclass(frozen=True, slots=True)
 class ImportedFile:
-    """One file of an import. clip_id: None without a clip; error: an RFC 9457 problem."""
+    """One file of an import.
+
+    clip_id: None without a clip; error: an RFC 9457 problem; differences: from the stored clip (see
+    `Difference`); warnings: of its clip now (see `ClipWarning`).
+    """
 
     path: str
     outcome: FileOutcome
     clip_id: str | None
     error: dict[str, Any] | None
+    differences: tuple[dict[str, Any], ...] = ()
+    warnings: tuple[dict[str, Any], ...] = ()
 
 
 _BECAME_CLIP = import_entries.c.outcome == ImportOutcome.QUEUED.value
@@ -72,13 +92,17 @@ _outcome = case(
     (clips.c.state.is_(None), FileOutcome.DELETED.value),
     else_=clips.c.state,
 )
+# Most clips have no warning ("[]"); their JSON need not be read.
+_WARNINGS = cast(clips.c.warnings, String)
 _FILES = (
     select(
         import_entries.c.path,
         _outcome.label("outcome"),
         import_entries.c.clip_id,
         import_entries.c.problem,
+        import_entries.c.differences,
         clips.c.error,
+        clips.c.warnings,
     )
     .select_from(import_entries)
     .outerjoin(clips, clips.c.id == import_entries.c.clip_id)
@@ -96,6 +120,20 @@ def count(tx: Tx, job_id: str) -> dict[FileOutcome, int]:
         .group_by(_outcome)
     )
     return {FileOutcome(outcome): int(number) for outcome, number in tx.execute(query)}
+
+
+def count_warnings(tx: Tx, job_id: str) -> dict[str, int]:
+    """The number of clips of an import by the code of each warning that they have."""
+    query = (
+        select(clips.c.id, clips.c.warnings)
+        .join(import_entries, import_entries.c.clip_id == clips.c.id)
+        .where(import_entries.c.job_id == job_id, _WARNINGS.not_in(("[]", "null")))
+    )
+    of_clip = {clip_id: warnings or () for clip_id, warnings in tx.execute(query)}
+    counts: Counter[str] = Counter()
+    for warnings in of_clip.values():
+        counts.update({warning["code"] for warning in warnings})
+    return dict(sorted(counts.items()))
 
 
 def page(
@@ -154,6 +192,8 @@ def _to_file(row: RowMapping) -> ImportedFile:
         outcome=FileOutcome(row["outcome"]),
         clip_id=row["clip_id"],
         error=row["problem"] or _clip_error(row),
+        differences=tuple(row["differences"] or ()),
+        warnings=tuple(row["warnings"] or ()),
     )
 
 

@@ -6,14 +6,14 @@ when the last of its clips ends. `import_files` reads the recorded files.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from sqlalchemy import bindparam, exists, func, insert, or_, select, update
 
 from app.store.clips import versions as library
-from app.store.clips.record import REANALYSIS_OPEN, ClipState
+from app.store.clips.record import REANALYSIS_OPEN, ClipState, Difference
 from app.store.database.engine import Tx
 from app.store.database.ids import utc_now
 from app.store.database.tables import clips, import_entries, jobs
@@ -22,14 +22,19 @@ from app.store.jobs import repository as job_repository
 from app.store.jobs.import_files import FileOutcome, ImportOutcome
 from app.store.jobs.record import JobRecord, JobState, Lease
 
-COUNTED = (
-    FileOutcome.READY,
-    FileOutcome.EXISTS,
-    FileOutcome.FAILED,
-    FileOutcome.DELETED,
-    FileOutcome.ABSENT,
-)
-"""The outcomes that the result of an ended import counts."""
+COUNTED = {
+    "new": FileOutcome.READY,
+    "updated": FileOutcome.UPDATED,
+    "unchanged": FileOutcome.UNCHANGED,
+    "conflicting": FileOutcome.CONFLICTING,
+    "failed": FileOutcome.FAILED,
+    "skipped": FileOutcome.SKIPPED,
+    "deleted": FileOutcome.DELETED,
+    "absent": FileOutcome.ABSENT,
+}
+"""The members of the result of an ended import that count files, each with the outcome."""
+_UNMATCHED = "unmatched"
+"""Member of the payload and of the result: how many files the pattern of paths does not match."""
 _ABSENT_COUNT = "absent"
 """Member of the payload of an import: the number of absent files that its manifests name."""
 _FILES = "files"
@@ -52,12 +57,13 @@ _ANY_UNFINISHED = (
 
 @dataclass(frozen=True, slots=True)
 class NewEntry:
-    """The outcome of a file: a clip, or an RFC 9457 problem."""
+    """The outcome of a file: a clip with its differences from what came, or an RFC 9457 problem."""
 
     path: str
     outcome: ImportOutcome
     clip_id: str | None = None
     problem: dict[str, Any] | None = None
+    differences: tuple[Difference, ...] = ()
 
 
 def add_entries(tx: Tx, job_id: str, new: Sequence[NewEntry]) -> None:
@@ -73,6 +79,7 @@ def add_entries(tx: Tx, job_id: str, new: Sequence[NewEntry]) -> None:
                 "outcome": entry.outcome.value,
                 "clip_id": entry.clip_id,
                 "problem": entry.problem,
+                "differences": [asdict(one) for one in entry.differences] or None,
             }
             for entry in new
         ]
@@ -83,6 +90,14 @@ def recorded_paths(tx: Tx, job_id: str) -> frozenset[str]:
     """Paths that are recorded already. An import that is taken up again skips them."""
     query = select(import_entries.c.path).where(import_entries.c.job_id == job_id)
     return frozenset(tx.execute(query).scalars())
+
+
+def has_clip(tx: Tx, job_id: str, clip_id: str) -> bool:
+    """Whether an earlier file of an import is recorded with this clip."""
+    query = select(import_entries.c.path).where(
+        import_entries.c.clip_id == clip_id, import_entries.c.job_id == job_id
+    )
+    return tx.execute(query.limit(1)).first() is not None
 
 
 def waiting_clips(tx: Tx, job_id: str) -> tuple[str, ...]:
@@ -119,12 +134,13 @@ def requeue_behind_others(
 
 
 def wait_for_clips(
-    tx: Tx, lease: Lease, detail: str | None = None, *, absent: int = 0
+    tx: Tx, lease: Lease, detail: str | None = None, *, absent: int = 0, unmatched: int = 0
 ) -> JobRecord:
     """The archive is unpacked: the job needs no worker any more, and ends with its last clip.
 
     absent: the number of absent files that the manifests name, including those that are not
-    recorded. Raises LeaseLost.
+    recorded; unmatched: the number of files that the pattern of paths does not match. Raises
+    LeaseLost.
     """
     parked = leases.park(tx, lease, detail)
     payload = job_repository.get_row(tx, parked.id)["payload"]
@@ -132,7 +148,7 @@ def wait_for_clips(
     _update(
         tx,
         parked.id,
-        payload={**payload, _ABSENT_COUNT: absent, _FILES: total},
+        payload={**payload, _ABSENT_COUNT: absent, _UNMATCHED: unmatched, _FILES: total},
         progress=(total - waiting) / max(total, 1),
     )
     return settle_if_done(tx, parked.id, ended=0)
@@ -176,16 +192,21 @@ def settle_if_done(tx: Tx, job_id: str, ended: int) -> JobRecord:
         progress=1.0,
         detail=None,
         finished_at=utc_now(),
-        result=_result(tx, job_id, row["payload"].get(_ABSENT_COUNT)),
+        result=_result(tx, job_id, row["payload"]),
     )
 
 
-def _result(tx: Tx, job_id: str, absent: int | None) -> dict[str, Any]:
+def _result(tx: Tx, job_id: str, payload: Mapping[str, Any]) -> dict[str, Any]:
     # Only counts, without the files: an import may hold a hundred thousand of them.
     number_of = import_files.count(tx, job_id)
-    counts = {outcome.value: number_of.get(outcome, 0) for outcome in COUNTED}
-    counts[FileOutcome.ABSENT.value] = absent or counts[FileOutcome.ABSENT.value]
-    return {"total": sum(counts.values()), **counts}
+    counts = {name: number_of.get(outcome, 0) for name, outcome in COUNTED.items()}
+    counts["absent"] = payload.get(_ABSENT_COUNT) or counts["absent"]
+    return {
+        "total": sum(counts.values()),
+        **counts,
+        _UNMATCHED: payload.get(_UNMATCHED, 0),
+        "warnings": import_files.count_warnings(tx, job_id),
+    }
 
 
 def _counts(tx: Tx, job_id: str) -> tuple[int, int]:

@@ -10,14 +10,17 @@ from app.demo import DemoClip
 from app.errors import ModelBeingFitted, ModelNotFitted, NotFound
 from app.services.clips import catalogue as clips
 from app.services.clips import jobs, labels, persons
+from app.services.clips.anonymize import NameRemover
 from app.services.find.find import find_motion
 from app.services.find.queries import MotionQuery
 from app.services.find.query_source import QuerySource
+from app.services.imports import imports
 from app.services.library.library import Library
 from app.services.recognition import recognize
 from app.services.recognition.recognize import RecognizeQuery
 from app.services.training import models
 from app.services.training.fit import fit_library
+from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipState
 from app.store.jobs.record import JobKind, JobState
 from tests.libraries import settings_for, upload, work
@@ -152,3 +155,82 @@ def test_no_model_holds_persons_if_recognizing_persons_is_switched_off(
             assert "bruno" not in str(record.meta)
     finally:
         lib.close()
+
+
+def test_whatever_names_a_forgotten_person_is_removed_and_nothing_else(
+    lib: Library, some_demo_clips: list[DemoClip], tmp_path: Path
+) -> None:
+    """The name in names and paths of files, metadata, words, imports; also in clips of others."""
+    own, other = some_demo_clips[:2]
+    folder = tmp_path / "quatermain in"
+    for path, clip in (
+        ("Zebulon_Quatermain/ZebulonQuatermain-01.bvh", own),
+        ("lab/zebulon quatermain/max_speed.bvh", other),
+    ):
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        (folder / path).write_bytes(clip.content)
+    (folder / "zebulon-quatermain.bvh").write_bytes(b"broken")
+    table = (
+        "path,person,task,words,partner,note,age\n"
+        f"Zebulon_Quatermain/ZebulonQuatermain-01.bvh,{NAME},walk,slow,,,30\n"
+        f"lab/zebulon quatermain/max_speed.bvh,Max,walk,slow,{NAME},with zebulon quatermain,31\n"
+    )
+    (folder / "manifest.csv").write_text(table)
+    job = imports.import_path(lib, folder)
+    clips.update_clip(
+        lib,
+        clips.list_clips(lib, ClipFilter(person=(NAME,))).items[0].id,
+        {
+            "metadata": {"contact": f"{NAME}, room 5", "kept": "room 5"},
+            "source": f"studio of {NAME}",
+        },
+    )
+    work(lib.settings)
+
+    persons.forget_person(lib, NAME)
+
+    lib.store.erase_traces()
+    stored = _bytes_of(lib.settings.data_dir).lower()
+    for trace in (b"zebulon quatermain", b"zebulonquatermain", b"zebulon_quatermain"):
+        assert trace not in stored
+    found = {clip.path: clip for clip in clips.list_clips(lib).items}
+    assert set(found) == {"anonymous/anonymous-01.bvh", "lab/anonymous/max_speed.bvh"}
+    theirs = found["anonymous/anonymous-01.bvh"]
+    assert (theirs.name, theirs.file_name, theirs.source) == (
+        "anonymous-01",
+        "anonymous-01.bvh",
+        "studio of anonymous",
+    )
+    assert (theirs.metadata, theirs.words) == ({"age": 30, "kept": "room 5"}, ("slow",))
+    of_max = found["lab/anonymous/max_speed.bvh"]
+    assert (of_max.person, of_max.name, of_max.metadata) == ("Max", "max_speed", {"age": 31})
+    assert {file.path for file in jobs.all_files(lib, job.id)} == {
+        "anonymous.bvh",
+        "anonymous/anonymous-01.bvh",
+        "lab/anonymous/max_speed.bvh",
+    }
+    assert clips.list_clips(lib, ClipFilter(q="zebulon")).items == ()
+
+    persons.forget_person(lib, "Max")
+    kept = {clip.path: clip.name for clip in clips.list_clips(lib).items}
+    assert kept["lab/anonymous/max_speed.bvh".replace("max", "anonymous")] == "anonymous_speed"
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "is_in"),
+    [
+        ("Ann", "anna_walk", False),
+        ("Ann", "ANN-walk01", True),
+        ("Ann", "walk ann2", True),
+        ("02", "02_01.bvh", True),
+        ("02", "102_3", False),
+        ("02", "take02b", True),
+        ("Anna Smith", "anna--smith", True),
+        ("Anna Smith", "annasmithers", False),
+        ("?!", "what?!", True),
+    ],
+)
+def test_a_name_is_found_as_a_word(name: str, text: str, is_in: bool) -> None:
+    remover = NameRemover(name)
+    assert remover.holds_name(text) is is_in
+    assert (remover.without(text) != text) is is_in

@@ -186,7 +186,7 @@ def test_a_folder_with_pairs_and_a_single_amc_file_are_imported(
     result = jobs.get_job(lib, single.id).result
     assert result is not None
     assert [(line["path"], line["outcome"]) for line in result["files"]] == [
-        ("07_01.amc", "exists")
+        ("07_01.amc", "unchanged")
     ]
 
 

@@ -81,16 +81,17 @@ def test_an_archive_becomes_clips_and_every_file_has_an_outcome(
     assert _outcomes(done.result) == {
         f"set/{first.path}": "ready",
         f"set/{second.path}": "ready",
-        "set/README.md": "failed",
+        "set/README.md": "skipped",
         "set/cut.bvh": "failed",
         "set/empty.bvh": "failed",
         "set/gone.bvh": "absent",
-        "set/twin.bvh": "ready",
+        "set/twin.bvh": "unchanged",
     }
     assert done.result is not None
-    assert {name: done.result[name] for name in ("total", "failed", "absent")} == {
+    assert {name: done.result[name] for name in ("total", "failed", "skipped", "absent")} == {
         "total": 7,
-        "failed": 3,
+        "failed": 2,
+        "skipped": 1,
         "absent": 1,
     }
     assert all(
@@ -118,7 +119,7 @@ def test_the_same_folder_twice_gives_the_same_clips(
     assert {c.id: c.state for c in clips.list_clips(lib).items} == before
     outcomes = _outcomes(jobs.get_job(lib, first.id).result)
     assert _outcomes(jobs.get_job(lib, again.id).result) == {
-        path: "exists" if outcome == "ready" else outcome for path, outcome in outcomes.items()
+        path: "unchanged" if outcome == "ready" else outcome for path, outcome in outcomes.items()
     }
 
 

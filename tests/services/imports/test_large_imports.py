@@ -59,7 +59,7 @@ def test_missing_files_of_a_manifest_are_counted_and_the_first_are_listed(
     work(lib.settings)
     job = jobs.get_job(lib, job.id)
     assert job.result is not None
-    assert (job.result["total"], job.result["absent"], job.result["ready"]) == (5001, 5000, 1)
+    assert (job.result["total"], job.result["absent"], job.result["new"]) == (5001, 5000, 1)
     absent = list(jobs.all_files(lib, job.id, FileOutcome.ABSENT))
     assert [file.path for file in absent] == [f"gone_{i:06d}.bvh" for i in range(MAX_ABSENT_LISTED)]
     assert absent[0].error is not None
@@ -100,7 +100,7 @@ def test_the_result_of_a_large_import_is_small_and_its_files_are_paged(lib: Libr
 
 def test_the_result_lists_failed_files_first(lib: Library, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(jobs, "FIRST_FILES", 3)
-    files = [*_bad(4), ("z_empty.bvh", b""), ("y_notes.txt", b"notes")]
+    files = [*_bad(4), ("z_empty.bvh", b""), ("y_notes.bvh", b"notes")]
     imports.start_import(lib, zip_archive(files), "a.zip")
     _unpack(lib, claimed := _claim(lib))
     for clip in clips.list_clips(lib).items:
@@ -110,7 +110,7 @@ def test_the_result_lists_failed_files_first(lib: Library, monkeypatch: pytest.M
     listed = [(line["path"], line["outcome"]) for line in job.result["files"]]
     assert listed == [
         ("bad_000.bvh", "deleted"),
-        ("y_notes.txt", "failed"),
+        ("y_notes.bvh", "failed"),
         ("z_empty.bvh", "failed"),
     ]
 

@@ -33,18 +33,19 @@ def test_a_row_has_the_values_of_all_columns() -> None:
     manifest = _read(TABLE.encode(), "set")
     row = manifest.row("set/a.bvh")
     words = ("walk", "slow", "left_leg")
-    assert row.labels == ClipLabels("a", "ada", "walk", words, "CC0", "me")
-    assert row.hints == AnalysisHints(frame_rate=60.0, metres_per_unit=0.01, up_axis="-z")
+    metadata = {"remark": "x, y"}
+    assert row.values.labels == ClipLabels("a", "ada", "walk", words, "CC0", "me", metadata)
+    assert row.values.hints == AnalysisHints(frame_rate=60.0, metres_per_unit=0.01, up_axis="-z")
     assert row.problem is None
     empty = manifest.row("set/deep/b.bvh")
-    assert (empty.labels, empty.hints) == (ClipLabels("b"), AnalysisHints())
+    assert (empty.values.labels, empty.values.hints) == (ClipLabels("b"), AnalysisHints())
 
 
 @pytest.mark.parametrize("separator", [";", "\t"])
 def test_separators_of_all_spreadsheet_programs_are_read(separator: str) -> None:
     table = "path,person,words\na.bvh,ada,walk slow\n".replace(",", separator)
     row = _read(table.encode()).row("a.bvh")
-    assert (row.labels.person, row.labels.words) == ("ada", ("walk", "slow"))
+    assert (row.values.labels.person, row.values.labels.words) == ("ada", ("walk", "slow"))
 
 
 @pytest.mark.parametrize(
@@ -143,7 +144,7 @@ def test_limits_hold_for_all_manifests_of_an_import_together() -> None:
 def test_the_later_of_two_manifests_counts() -> None:
     manifest = _read(b"path,person\nset/a.bvh,ada\n")
     manifest.read(io.BytesIO(b"person,path\nbruno,a.bvh\n"), "set")
-    assert manifest.row("set/a.bvh").labels.person == "bruno"
+    assert manifest.row("set/a.bvh").values.labels.person == "bruno"
 
 
 def test_recordings_have_their_line_and_their_path_from_the_root() -> None:

@@ -19,7 +19,7 @@ from app.store.database.engine import Database
 from app.store.database.tables import metadata
 from app.store.jobs import import_files, imports, leases
 from app.store.jobs import repository as jobs
-from app.store.jobs.import_files import ImportOutcome
+from app.store.jobs.import_files import FileOutcome, ImportOutcome
 from app.store.jobs.imports import NewEntry
 from app.store.jobs.record import JobKind, NewJob
 from app.store.store import Store
@@ -103,6 +103,28 @@ def test_an_upgrade_makes_large_results_small_and_keeps_every_file(
         paths = [file.path for file in import_files.page(tx, job.id).items]
     assert paths[0] == "a"
     assert len(paths[1]) <= 500
+
+
+def test_an_upgrade_renames_the_outcomes_of_imports(store: Store, database_url: str) -> None:
+    result = {"total": 2, "ready": 1, "exists": 1, "failed": 0, "deleted": 0, "absent": 0}
+    with store.write() as tx:
+        job = jobs.enqueue(tx, NewJob(JobKind.IMPORT))
+        claimed = leases.claim(tx, [JobKind.IMPORT], "worker")
+        assert claimed is not None
+        imports.add_entries(tx, job.id, [NewEntry("a.bvh", ImportOutcome.UNCHANGED)])
+        leases.succeed(tx, claimed.lease, result)
+    database = Database(database_url, foreign_keys=False)
+    with database.migrate() as tx:
+        command.downgrade(schema._config(tx), "0008")
+        (outcome,) = tx.execute(text("SELECT outcome FROM import_entries")).scalars()
+    database.close()
+    assert outcome == "exists"
+    schema.upgrade(database_url)
+    with store.read() as tx:
+        found = jobs.get(tx, job.id).result or {}
+        (file,) = import_files.page(tx, job.id).items
+    assert file.outcome is FileOutcome.UNCHANGED
+    assert (found["new"], found["unchanged"], found["updated"]) == (1, 1, 0)
 
 
 def test_a_newer_database_is_refused(database_url: str) -> None:

@@ -171,11 +171,16 @@ def test_an_import_ends_with_the_last_of_its_clips(store: Store) -> None:
     assert done.finished_at is not None
     assert done.result == {
         "total": 4,
-        "ready": 1,
-        "exists": 0,
+        "new": 1,
+        "updated": 0,
+        "unchanged": 0,
+        "conflicting": 0,
         "failed": 2,
+        "skipped": 0,
         "deleted": 1,
         "absent": 0,
+        "unmatched": 0,
+        "warnings": {"frame_rate_suspect": 1},
     }
     with store.read() as tx:
         files = import_files.page(tx, job.id).items

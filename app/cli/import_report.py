@@ -1,0 +1,173 @@
+"""What `kinedex import` prints at its end, and its exit code."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from itertools import chain, islice
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from app.cli.output import print_table, print_text
+
+if TYPE_CHECKING:
+    from app.services.library.library import Library
+    from app.store.jobs.import_files import FileOutcome, ImportedFile
+    from app.store.jobs.record import JobRecord
+
+FAILED, NOTHING = 1, 2
+"""Exit codes: some files failed; no file could be imported."""
+MAX_LISTED = 20
+"""Rows of a table; --json lists all files."""
+MAX_VALUE = 60
+"""Characters of a value in a table."""
+COUNTS = ("new", "updated", "unchanged", "conflicting", "failed", "skipped", "absent")
+
+
+def exit_code(job: JobRecord) -> int:
+    """The exit code of an import; 0 while a worker still has to analyze its clips."""
+    result = job.result
+    if result is None:
+        return 0 if job.is_open else FAILED
+    if result["failed"]:
+        return FAILED
+    present = sum(result[name] for name in ("new", "updated", "unchanged", "conflicting"))
+    return 0 if present else NOTHING
+
+
+def document(lib: Library, job: JobRecord) -> dict[str, Any]:
+    """The job as in the API, but its result lists all recorded files."""
+    from app.api.schemas.jobs import Job, JobFile
+    from app.services.clips import jobs
+
+    shown: dict[str, Any] = Job.model_validate(job).model_dump(mode="json")
+    if shown["result"] is not None:
+        files = [
+            JobFile.model_validate(file).model_dump(mode="json")
+            for file in jobs.all_files(lib, job.id)
+        ]
+        left_out = max(shown["result"]["total"] - len(files), 0)
+        shown["result"] |= {"files": files, "files_left_out": left_out}
+    return shown
+
+
+def show(lib: Library, job: JobRecord) -> None:
+    """Print the numbers of files by result, what failed or differs, and the warnings."""
+    result = job.result
+    if result is not None:
+        counts = ", ".join(f"{result[name]} {name}" for name in COUNTS if _is_shown(name, result))
+        noun = "file" if result["total"] == 1 else "files"
+        typer.echo(f"{result['total']} {noun}: {counts}.")
+        _show_failures(lib, job.id, result)
+        _show_differences(lib, job.id, result)
+        _show_skipped(lib, job.id, result)
+        _show_remarks(lib, job.id, result)
+    if job.error:
+        typer.echo(f"kinedex: {job.error['detail']}", err=True)
+
+
+def _is_shown(name: str, result: dict[str, Any]) -> bool:
+    return bool(result[name]) or name in ("new", "updated", "unchanged")
+
+
+def _show_failures(lib: Library, job_id: str, result: dict[str, Any]) -> None:
+    from app.services.imports.plan import MAX_ABSENT_LISTED
+    from app.store.jobs.import_files import FileOutcome
+
+    failed = _files(lib, job_id, FileOutcome.FAILED, FileOutcome.ABSENT)
+    rows = ((file.path, _reason(file.error)) for file in failed if file.error is not None)
+    listed = result["failed"] + min(result["absent"], MAX_ABSENT_LISTED)
+    _print_some(("failed", "reason"), rows, listed)
+    absent = result["absent"]
+    if absent > MAX_ABSENT_LISTED:
+        typer.echo(f"A manifest names {absent - MAX_ABSENT_LISTED} more files that do not exist.")
+
+
+def _show_differences(lib: Library, job_id: str, result: dict[str, Any]) -> None:
+    from app.store.jobs.import_files import FileOutcome
+
+    for outcome, columns, advice in (
+        (FileOutcome.UPDATED, ("updated", "field", "before", "now"), ""),
+        (
+            FileOutcome.CONFLICTING,
+            ("conflicting", "field", "in the library", "in the import"),
+            "Somebody edited these labels since, or two files with the same content say different"
+            " things. The library kept its values; --overwrite replaces edited ones.",
+        ),
+    ):
+        files = _files(lib, job_id, outcome)
+        rows = (
+            (file.path, one["field"], _value(one["stored"]), _value(one["sent"]))
+            for file in files
+            for one in file.differences
+            if outcome is FileOutcome.UPDATED or not one["applied"]
+        )
+        count = result[outcome.value]
+        _print_some(columns, rows, count)
+        if count and advice:
+            print_text(advice)
+
+
+def _show_skipped(lib: Library, job_id: str, result: dict[str, Any]) -> None:
+    from app.store.jobs.import_files import FileOutcome
+
+    if result["skipped"]:
+        names = [file.path for file in islice(_files(lib, job_id, FileOutcome.SKIPPED), MAX_LISTED)]
+        more = "" if len(names) == result["skipped"] else ", ..."
+        print_text(f"Skipped, because they are no motions: {', '.join(names)}{more}")
+
+
+def _show_remarks(lib: Library, job_id: str, result: dict[str, Any]) -> None:
+    if result["unmatched"]:
+        print_text(f"The pattern --labels does not match {result['unmatched']} files.")
+    warnings: dict[str, int] = result["warnings"]
+    if not warnings:
+        return
+    examples = _examples(lib, job_id, warnings)
+    rows = [(code, count, examples.get(code)) for code, count in warnings.items()]
+    print_table(("warning", "clips", "for example"), rows)
+
+
+def _examples(lib: Library, job_id: str, codes: Iterable[str]) -> dict[str, str]:
+    """The first file with each warning, and what the warning says about it."""
+    from app.services.clips import jobs
+
+    missing, found = set(codes), {}
+    for file in jobs.all_files(lib, job_id):
+        for warning in file.warnings:
+            if warning["code"] in missing:
+                missing.remove(warning["code"])
+                found[warning["code"]] = f"{file.path}: {warning['detail']}"
+        if not missing:
+            break
+    return found
+
+
+def _files(lib: Library, job_id: str, *outcomes: FileOutcome) -> Iterable[ImportedFile]:
+    from app.services.clips import jobs
+
+    return chain.from_iterable(jobs.all_files(lib, job_id, outcome) for outcome in outcomes)
+
+
+def _print_some(columns: Sequence[str], rows: Iterable[Sequence[object]], files: int) -> None:
+    """Print the first rows; files: the number of files that all rows are about."""
+    some = list(islice(rows, MAX_LISTED + 1))
+    if some:
+        print_table(columns, some[:MAX_LISTED])
+    if len(some) > MAX_LISTED:
+        shown = Counter(row[0] for row in some[:MAX_LISTED])
+        typer.echo(f"... and {max(files - len(shown), 1)} more; --json lists all.")
+
+
+def _value(value: Any) -> str | None:
+    if value is None:
+        return None
+    text = " ".join(map(str, value)) if isinstance(value, list) else str(value)
+    return text if len(text) <= MAX_VALUE else f"{text[: MAX_VALUE - 1]}…"
+
+
+def _reason(problem: dict[str, Any]) -> str:
+    places = [f"{place['location']}: {place['message']}" for place in problem["errors"]]
+    # the detail of a file reader is often the same text as its only place
+    return " ".join([problem["detail"], *(place for place in places if place != problem["detail"])])

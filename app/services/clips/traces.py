@@ -1,0 +1,80 @@
+"""Removes what names a forgotten person from the texts of clips and from lists of imported files.
+
+In the clips of the person, the name is replaced wherever it is. In the clips of others, only a
+whole folder of the path, a whole word or a whole source with this name is replaced, because a name
+can be a common word too: the person "Max" is not in `max_speed.bvh`. Metadata that hold the name
+are removed from all clips.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import replace
+from typing import Any
+
+from app.services.clips.anonymize import NameRemover
+from app.store.clips import texts
+from app.store.clips.metadata_values import as_text
+from app.store.clips.record import META
+from app.store.clips.texts import ClipTexts
+from app.store.database.engine import Tx
+from app.store.jobs import import_texts
+
+
+def remove_name(tx: Tx, person: str, clip_ids: Collection[str]) -> None:
+    """Remove the name of a person; clip_ids: the clips that had the person's label."""
+    remover, own = NameRemover(person), frozenset(clip_ids)
+    cleaned = ((clip, _cleaned(remover, clip, clip.id in own)) for clip in texts.read(tx))
+    texts.write(tx, [(before, now) for before, now in cleaned if before != now])
+
+    def in_import(clip_id: str | None, value: Any) -> Any:
+        return remover.in_json(value) if remover.has_letter or clip_id in own else value
+
+    import_texts.rewrite(tx, in_import)
+
+
+def _cleaned(remover: NameRemover, clip: ClipTexts, is_own: bool) -> ClipTexts:
+    metadata = {
+        key: value
+        for key, value in clip.metadata.items()
+        if not _is_named(remover, as_text(value), is_own)
+    }
+    words = tuple(word for word in clip.words if not remover.is_name(word))
+    imported = {
+        name: value
+        for name, value in clip.imported.items()
+        if not _names_person(remover, name, value, is_own)
+    }
+    changed = replace(clip, metadata=metadata, words=words, imported=imported)
+    if is_own:
+        return replace(
+            changed,
+            name=remover.without(clip.name),
+            file_name=remover.without(clip.file_name),
+            path=None if clip.path is None else remover.without(clip.path),
+            source=None if clip.source is None else remover.without(clip.source),
+            audio_name=None if clip.audio_name is None else remover.without(clip.audio_name),
+        )
+    return replace(
+        changed,
+        path=None if clip.path is None else remover.without_parts(clip.path),
+        source=None if clip.source is None else remover.without_parts(clip.source),
+    )
+
+
+def _is_named(remover: NameRemover, text: str, is_own: bool) -> bool:
+    """Whether a value of the metadata names the person."""
+    if remover.has_letter or is_own:
+        return remover.holds_name(text)
+    return remover.is_name(text)
+
+
+def _names_person(remover: NameRemover, field: str, value: Any, is_own: bool) -> bool:
+    """Whether a label or hint that came with the file names the person."""
+    if field == "person":
+        return isinstance(value, str) and remover.is_name(value)
+    if isinstance(value, list):
+        return any(isinstance(one, str) and remover.is_name(one) for one in value)
+    if field.startswith(META) and value is not None:
+        return _is_named(remover, as_text(value), is_own)
+    return isinstance(value, str) and _is_named(remover, value, is_own)
