@@ -15,6 +15,8 @@ from app.api.docs import STATIC, install_docs
 from app.api.examples import example_ids
 from app.api.failures.handlers import install_handlers
 from app.api.guard.access_check import AccessCheck
+from app.api.guard.compression import Compression
+from app.api.guard.cors import Cors
 from app.api.guard.envelope import Envelope
 from app.api.guard.gates import Gates
 from app.api.guard.limits import BodyLimit
@@ -47,6 +49,7 @@ from app.api.routes import (
 from app.api.schemas.recognition import Recognize
 from app.api.schemas.search import MotionSearch
 from app.api.schemas.synthesis import Synthesize
+from app.api.validators import install_validators
 from app.config import Settings
 from app.errors import KinedexError
 from app.services.library.library import Library
@@ -103,6 +106,7 @@ def create_app(settings: Settings) -> FastAPI:
     app.state.start_failure = None
     app.state.gates = Gates.of(settings.request_timeout_s)
     install_handlers(app)
+    install_validators(app)
     for module in ROUTES:
         app.include_router(module.router)
     install_docs(app)
@@ -111,8 +115,11 @@ def create_app(settings: Settings) -> FastAPI:
     app.add_middleware(BodyLimit, settings=settings)
     app.add_middleware(SlowBodies, settings=settings)
     app.add_middleware(AccessCheck)
+    if settings.cors_origins:
+        app.add_middleware(Cors, origins=settings.cors_origins)
     install_metrics(app)
     app.add_middleware(KnownMethods)
+    app.add_middleware(Compression)
     app.add_middleware(Envelope)
     return app
 

@@ -140,7 +140,7 @@ def _show(hits: Hits, as_json: bool, *, by_words: bool, parts: bool) -> None:
     if as_json:
         from app.api.schemas.search import MotionHits, WordHits
 
-        answer = WordHits.of(hits) if by_words else MotionHits.of(hits)
+        answer = (WordHits if by_words else MotionHits).model_validate(hits)
         print_json(answer.model_dump(mode="json"))
         return
     print_table(

@@ -151,13 +151,18 @@ def _is_running(pid: int) -> bool:
 
 def test_the_settings_in_force_reach_the_processes(tmp_path: Path) -> None:
     settings = Settings(
-        data_dir=tmp_path, port=8123, require_keys=True, database_url="sqlite:///x.sqlite3"
+        data_dir=tmp_path,
+        port=8123,
+        require_keys=True,
+        database_url="sqlite:///x.sqlite3",
+        trusted_proxies="10.0.0.1, 10.0.0.2",
     )
     told = environment(settings)
     assert told["KINEDEX_DATA_DIR"] == str(tmp_path)
     assert told["KINEDEX_PORT"] == "8123"
     assert told["KINEDEX_REQUIRE_KEYS"] == "true"
     assert told["KINEDEX_DATABASE_URL"] == "sqlite:///x.sqlite3"
+    assert told["KINEDEX_TRUSTED_PROXIES"] == "10.0.0.1,10.0.0.2"
 
 
 @pytest.mark.parametrize("arguments", [supervisor.API, supervisor.WORKER], ids=["api", "worker"])

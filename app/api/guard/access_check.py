@@ -56,7 +56,7 @@ class AccessCheck:
         headers = Headers(scope=scope)
         caller = await to_thread.run_sync(find_caller, library, headers, limiter=self._threads)
         if caller.is_free:
-            refuse_other_sites(scope)
+            refuse_other_sites(scope, library.settings.cors_origins)
         if scope["method"] not in WITHOUT_BODY:
             caller.require_key()
         return caller

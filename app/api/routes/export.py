@@ -13,6 +13,7 @@ from app.api.guard.admission import heavy
 from app.api.openapi import ClipId, refusals
 from app.api.pieces import Pieces
 from app.api.schemas.export import ExportQuery
+from app.api.validators import UNCHANGED, of_one_clip
 from app.services.views.export import export
 from app.services.views.export_format import ExportFormat
 
@@ -47,7 +48,7 @@ little, so joints have six channels, unless `skeleton=canonical`.
 @router.get(
     "/export",
     response_class=StreamingResponse,
-    dependencies=[heavy],
+    dependencies=[of_one_clip, heavy],
     description=DESCRIPTION,
     responses={
         200: {
@@ -57,6 +58,7 @@ little, so joints have six channels, unless `skeleton=canonical`.
                 for kind in MEDIA_TYPES.values()
             },
         },
+        304: UNCHANGED,
         **refusals(404, 409),
     },
 )

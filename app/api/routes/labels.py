@@ -14,6 +14,8 @@ from app.api.schemas.labels import LabelPage, NamedCounts, WordListQuery
 from app.services.clips import labels, persons
 from app.services.recognition import suggestions
 from app.store.clips.labels import LabelKind
+from app.store.database.paging import Page
+from app.store.database.totals import Total
 
 DEFAULT_WORDS, DEFAULT_COMPLETIONS = 1000, 10
 """Limits if the client sends none."""
@@ -70,5 +72,8 @@ def list_words(lib: Lib, query: Annotated[WordListQuery, Query()]) -> NamedCount
     if query.q is None:
         page = labels.page(lib, LabelKind.WORD, query.limit or DEFAULT_WORDS, query.cursor)
         return NamedCounts.model_validate(page)
-    found = suggestions.complete(lib, query.q, query.limit or DEFAULT_COMPLETIONS)
-    return NamedCounts.model_validate({"items": found})
+    limit = query.limit or DEFAULT_COMPLETIONS
+    found = tuple(suggestions.complete(lib, query.q, limit))
+    # A full page may be the first of several, which nobody counts.
+    page = Page(found, None).counted(Total(len(found), is_exact=len(found) < limit))
+    return NamedCounts.model_validate(page)

@@ -10,11 +10,13 @@ from pydantic import BeforeValidator, ConfigDict, Field, Json
 
 from app.api.schemas.base import (
     Cursor,
+    Fields,
     FormWords,
     Incoming,
     Label,
     Limit,
     Outgoing,
+    Paged,
     PartOfName,
     Roles,
     Seconds,
@@ -127,11 +129,10 @@ class ClipCreated(Outgoing):
     job: Job | None
 
 
-class ClipList(Outgoing):
+class ClipList(Paged):
     """A page of clips."""
 
     items: list[Clip]
-    next: str | None
 
 
 class ClipForm(Incoming):
@@ -205,6 +206,7 @@ class ClipQuery(Filter):
     sort: Sort = Field("-created_at", description="A minus sign at the start reverses the order.")
     limit: Limit = 10
     cursor: Cursor | None = None
+    fields: Fields | None = None
 
     def as_filter(self) -> ClipFilter:
         """The filter of the store."""

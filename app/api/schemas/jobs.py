@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field
 
 from app.api.failures.problems import stored_problem
-from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing
+from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing, Paged
 from app.api.schemas.problem import StoredProblem
 from app.store.jobs.import_files import FileOutcome
 from app.store.jobs.record import JobKind, JobState
@@ -59,11 +59,10 @@ class JobFile(Outgoing):
     error: StoredProblem = Field(description="The reason why it failed, else null.")
 
 
-class JobFileList(Outgoing):
+class JobFileList(Paged):
     """A page of an import's files, by path."""
 
     items: list[JobFile]
-    next: str | None
 
 
 class JobFileQuery(Incoming):
@@ -74,11 +73,10 @@ class JobFileQuery(Incoming):
     cursor: Cursor | None = None
 
 
-class JobList(Outgoing):
+class JobList(Paged):
     """A page of jobs, newest first."""
 
     items: list[Job]
-    next: str | None
 
 
 class JobStarted(Outgoing):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing, PartOfName, Words
+from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing, Paged, PartOfName, Words
 
 
 class NamedCount(Outgoing):
@@ -17,11 +17,10 @@ class NamedCount(Outgoing):
     )
 
 
-class NamedCounts(Outgoing):
-    """A page of the labels of a kind, by name."""
+class NamedCounts(Paged):
+    """A page of the labels of a kind, by name. Of completions there is one page."""
 
     items: list[NamedCount]
-    next: str | None = None
 
 
 class WordListQuery(Incoming):

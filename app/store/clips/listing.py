@@ -15,6 +15,7 @@ from app.store.clips.rows import to_record
 from app.store.database.engine import Tx
 from app.store.database.paging import Page, Position, Value, after, read_cursor, write_cursor
 from app.store.database.tables import clips
+from app.store.database.totals import Total, total_of
 
 DEFAULT_SORT = "-created_at"
 
@@ -58,6 +59,11 @@ def count_clips(tx: Tx, filter: ClipFilter) -> int:
     """How many clips pass the filter."""
     found = tx.execute(select(func.count()).select_from(clips).where(condition(filter)))
     return int(found.scalar_one())
+
+
+def total(tx: Tx, filter: ClipFilter) -> Total:
+    """How many clips pass the filter; an estimate if there are many."""
+    return total_of(tx, select(clips.c.id).where(condition(filter)))
 
 
 def list_ids(tx: Tx, filter: ClipFilter) -> tuple[str, ...]:
