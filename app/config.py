@@ -81,6 +81,11 @@ class Settings(BaseSettings):
         description="Origins of web pages that may call the API from a browser, with commas "
         "between them, as in `https://viewer.example`.",
     )
+    webhook_http: bool = Field(
+        False,
+        description="Send webhooks also by `http://` to other machines. By default they must be "
+        "`https://`, or on this machine.",
+    )
     log_level: Literal["debug", "info", "warning", "error"] = Field(
         "info", description="Least severity that is logged."
     )

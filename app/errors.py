@@ -181,6 +181,12 @@ class JobNotFound(NotFound):
     code = "job_not_found"
 
 
+class WebhookNotFound(NotFound):
+    """There is no webhook with this id."""
+
+    code = "webhook_not_found"
+
+
 class StoredFileMissing(NotFound):
     """A stored file of this clip is missing."""
 

@@ -45,6 +45,7 @@ def demo(context: typer.Context, host: Host = None, port: Port = None) -> None:
 def _fill(context: typer.Context) -> None:
     from app.cli.library import fit_if_due, follow, register, working
     from app.demo.library import write_demo
+    from app.services.examples import add_examples
 
     with open_library(context) as lib, tempfile.TemporaryDirectory() as folder:
         count = write_demo(Path(folder))
@@ -53,6 +54,7 @@ def _fill(context: typer.Context) -> None:
         with working(lib):
             follow(lib, job.id, "analysing")
             fit_if_due(lib)
+        add_examples(lib)
 
 
 def _announce(settings: Settings) -> None:

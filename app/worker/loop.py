@@ -29,6 +29,7 @@ from app.store.database.engine import Tx
 from app.store.jobs import leases, outcomes, owners, queue
 from app.store.jobs.abandoned import Watch
 from app.store.jobs.record import ClaimedJob, JobKind
+from app.worker.deliveries import Deliveries
 from app.worker.executors import JobExecutors
 from app.worker.expiry import Expiry
 from app.worker.running import Running
@@ -57,8 +58,10 @@ def run_worker(
     """Work until `stop_event` is set, or `until` holds (asked when there is nothing to claim)."""
     lib = Library.open(settings)
     sweeps = Sweeps(lib.store, settings.quarantine_days)
+    webhooks = Deliveries(lib.store)
     try:
         swept = sweeps.begin()
+        webhooks.begin()
         if not settings.recognize_persons:
             persons.remove_person_models(lib)
         outdated = reanalysis.requeue_outdated(lib)
@@ -70,6 +73,7 @@ def run_worker(
             worker.close()
     finally:
         sweeps.end()
+        webhooks.end()
         lib.close()
 
 

@@ -13,7 +13,7 @@ from starlette.datastructures import UploadFile
 from app.api.bodies import read_form, require_json, required
 from app.api.deps import Lib, reads, writes
 from app.api.guard.admission import changes, quick
-from app.api.openapi import ClipId, body, refusals
+from app.api.openapi import AudioClipId, ClipId, body, refusals
 from app.api.queries import file_of
 from app.api.schemas.clips import Clip, ClipCreated, ClipForm, ClipList, ClipPatch, ClipQuery
 from app.api.sparse import ChosenFields, sparse_item, sparse_page
@@ -139,13 +139,13 @@ def get_file(lib: Lib, request: Request, clip_id: ClipId) -> FileResponse:
         **refusals(404),
     },
 )
-def get_audio(lib: Lib, request: Request, clip_id: ClipId) -> FileResponse:
+def get_audio(lib: Lib, request: Request, clip_id: AudioClipId) -> FileResponse:
     """The recording that goes with a clip, as an attachment."""
     return _attachment(request, clips.open_recording(lib, clip_id), clip_id)
 
 
 @router.delete("/{clip_id}/audio", dependencies=[writes, changes], responses=refusals(404))
-def delete_audio(lib: Lib, clip_id: ClipId) -> Clip:
+def delete_audio(lib: Lib, clip_id: AudioClipId) -> Clip:
     """Delete the recording that goes with a clip. The clip is analyzed again."""
     return Clip.model_validate(clips.remove_recording(lib, clip_id))
 

@@ -49,7 +49,10 @@ def list_persons(lib: Lib, query: Annotated[LabelPage, Query()]) -> NamedCounts:
     dependencies=[writes, changes],
     responses=refusals(404),
 )
-def forget_person(lib: Lib, name: Annotated[str, Path(max_length=300)]) -> None:
+def forget_person(
+    lib: Lib,
+    name: Annotated[str, Path(max_length=300, openapi_examples={"a person": {"value": "PERSON"}})],
+) -> None:
     """Remove a person's label from all clips, and delete every model that holds the person.
 
     The models are fitted again in the background. Until then recognition, synthesis and

@@ -77,6 +77,13 @@ def _split(value: Any) -> Any:
     return value.split() if isinstance(value, str) else value
 
 
+FormBeats = Annotated[
+    list[Seconds],
+    BeforeValidator(_split, json_schema_input_type=str),
+    Field(max_length=MAX_KEYPOSES),
+]
+
+
 class ClipWarning(Outgoing):
     """A possible error in a clip that can still be used."""
 
@@ -154,12 +161,9 @@ class ClipForm(Incoming):
     stack: Stack | None = None
     audio_offset: Offset | None = Field(None, description=f"{_OFFSET} Default: estimated.")
     tempo: Tempo | None = Field(None, description="Beats per minute, if known.")
-    beats: Annotated[list[Seconds], BeforeValidator(_split), Field(max_length=MAX_KEYPOSES)] | (
-        None
-    ) = Field(
+    beats: FormBeats | None = Field(
         None,
-        description="Seconds, separated by spaces. They replace all other beats.",
-        examples=["0.5 1.1"],
+        description="Seconds, separated by spaces, as in `0.5 1.1`. They replace all other beats.",
     )
 
 
