@@ -19,6 +19,7 @@ from app.api.guard.compression import Compression
 from app.api.guard.cors import Cors
 from app.api.guard.envelope import Envelope
 from app.api.guard.gates import Gates
+from app.api.guard.idempotency import Idempotency
 from app.api.guard.limits import BodyLimit
 from app.api.guard.methods import KnownMethods
 from app.api.guard.slow_bodies import SlowBodies
@@ -115,6 +116,7 @@ def create_app(settings: Settings) -> FastAPI:
     install_docs(app)
     describe(app, [MotionSearch, Recognize, Synthesize], lambda: example_values(app.state.library))
     # The last one added is the outermost.
+    app.add_middleware(Idempotency)
     app.add_middleware(BodyLimit, settings=settings)
     app.add_middleware(SlowBodies, settings=settings)
     app.add_middleware(AccessCheck)

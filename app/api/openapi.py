@@ -17,6 +17,7 @@ from pydantic.json_schema import models_json_schema
 from app import errors
 from app.api.failures import problems
 from app.api.failures.problems import problem_of
+from app.api.guard.idempotency import HEADER, takes_key
 from app.api.schemas.problem import Problem
 from app.errors import KinedexError, Place
 
@@ -59,6 +60,15 @@ _EXAMPLES: dict[int, KinedexError] = {
 _EVERYWHERE = (401, 403, 422, 500, 503)
 _WITH_A_BODY = (408, 413)
 """Statuses of every call that has a body. A route with a body lists 413."""
+_IDEMPOTENCY_KEY = {
+    "name": HEADER,
+    "in": "header",
+    "required": False,
+    "schema": {"type": "string", "minLength": 1, "maxLength": 255},
+    "description": "A random text that you choose for this call. If you send the call again with "
+    "the same text within 24 hours, it takes no effect again and returns the first answer. With "
+    "another body it is refused (422); while the first call runs, it answers 409.",
+}
 _REQUEST_ID = {
     "name": "X-Request-Id",
     "in": "header",
@@ -207,4 +217,13 @@ def _build(app: FastAPI, bodies: Sequence[type[BaseModel]]) -> dict[str, Any]:
     )
     schemas = description.setdefault("components", {}).setdefault("schemas", {})
     schemas.update(extra.get("$defs", {}))
+    _add_idempotency_keys(description["paths"])
     return description
+
+
+def _add_idempotency_keys(paths: dict[str, Any]) -> None:
+    for path, item in paths.items():
+        for method, operation in item.items():
+            if takes_key(method, path):
+                operation.setdefault("parameters", []).append(_IDEMPOTENCY_KEY)
+                operation["responses"].setdefault("409", refusals(409)[409])

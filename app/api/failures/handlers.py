@@ -27,6 +27,7 @@ from app.api.failures.response import respond
 from app.errors import (
     AnalysisInterrupted,
     BadField,
+    CallInProgress,
     Conflict,
     DeadlineExceeded,
     DiskFull,
@@ -77,6 +78,8 @@ def _headers(failure: KinedexError) -> dict[str, str]:
     if isinstance(failure, Unauthorized):
         return {"WWW-Authenticate": "Bearer"}
     if isinstance(failure, _TEMPORARY):
+        return {"Retry-After": RETRY_AFTER_SECONDS}
+    if isinstance(failure, CallInProgress):
         return {"Retry-After": RETRY_AFTER_SECONDS}
     if isinstance(failure, ModelBeingFitted):
         return {"Retry-After": FIT_SECONDS}

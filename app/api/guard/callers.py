@@ -19,12 +19,14 @@ class Caller:
     """The caller of one request.
 
     role: the role of the valid key that was sent, None without a valid key; has_key: whether any
-    key was sent; is_free: keys are not required, so everything is allowed.
+    key was sent; is_free: keys are not required, so everything is allowed; key_id: the public id of
+    the valid key.
     """
 
     role: KeyRole | None
     has_key: bool
     is_free: bool
+    key_id: str | None = None
 
     def require_key(self) -> None:
         """Raises Unauthorized if a key is required and the request has no valid key."""
@@ -48,7 +50,9 @@ def find_caller(lib: Library, headers: Headers) -> Caller:
         if is_open(lib, tx):
             return Caller(role=None, has_key=bool(given), is_free=True)
         key = keys.verify(tx, given) if given else None
-    return Caller(role=None if key is None else key.role, has_key=bool(given), is_free=False)
+    if key is None:
+        return Caller(role=None, has_key=bool(given), is_free=False)
+    return Caller(role=key.role, has_key=True, is_free=False, key_id=key.id)
 
 
 def is_open(lib: Library, tx: Tx) -> bool:

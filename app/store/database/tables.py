@@ -300,3 +300,19 @@ webhook_deliveries = Table(
     Column("created_at", UtcDateTime, nullable=False),
     Index(None, "webhook_id", "created_at"),
 )
+
+# Calls with an Idempotency-Key, and their answers.
+keyed_calls = Table(
+    "keyed_calls",
+    metadata,
+    Column("key_sha256", String, primary_key=True),
+    Column("state", String, nullable=False),
+    # The process and the try that answer the call.
+    Column("owner", String, nullable=False),
+    Column("try_id", String, nullable=False),
+    Column("content_sha256", String),
+    Column("status", Integer),
+    Column("media_type", String),
+    Column("body", LargeBinary),
+    Column("created_at", UtcDateTime, nullable=False, index=True),
+)
