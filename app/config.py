@@ -7,15 +7,18 @@ Secrets are `SecretStr`, so that neither a log line nor a traceback shows them.
 from __future__ import annotations
 
 import difflib
+import ipaddress
 import os
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, SecretStr, ValidationError, ValidationInfo, field_validator
 from pydantic_settings import (
     BaseSettings,
+    NoDecode,
     PydanticBaseSettingsSource,
     SettingsConfigDict,
     TomlConfigSettingsSource,
@@ -37,6 +40,10 @@ _ESCAPED_IN_URLS = str.maketrans({"%": "%25", "?": "%3F"})
 DAY_S = 24 * 3600.0
 MAX_RETENTION_DAYS = 36_500
 """A century. Python can still compute a date a century ago."""
+_ORIGIN = re.compile(r"https?://[^/?#,\s*]+", re.ASCII)
+_ROOT_PATH = re.compile(r"(?:/[A-Za-z0-9._~-]+)*", re.ASCII)
+_Listed = Annotated[tuple[str, ...], NoDecode]
+"""A list that the environment and flags write with commas."""
 
 
 class Settings(BaseSettings):
@@ -59,6 +66,26 @@ class Settings(BaseSettings):
     port: int = Field(8000, ge=0, le=65535, description="Port to listen on; 0 takes a free one.")
     require_keys: bool = Field(
         False, description="Require an API key on loopback too (elsewhere it is always required)."
+    )
+    root_path: str = Field(
+        "",
+        description="Path below which a reverse proxy shows Kinedex, as in `/kinedex`. The proxy "
+        "removes it from the path of each request.",
+    )
+    trusted_proxies: _Listed = Field(
+        (),
+        description="Addresses or networks of reverse proxies, with commas between them. Only "
+        "their `X-Forwarded-For` and `X-Forwarded-Proto` are believed.",
+    )
+    cors_origins: _Listed = Field(
+        (),
+        description="Origins of web pages that may call the API from a browser, with commas "
+        "between them, as in `https://viewer.example`.",
+    )
+    webhook_http: bool = Field(
+        False,
+        description="Send webhooks also by `http://` to other machines. By default they must be "
+        "`https://`, or on this machine.",
     )
     log_level: Literal["debug", "info", "warning", "error"] = Field(
         "info", description="Lowest severity that is logged."
@@ -174,6 +201,38 @@ class Settings(BaseSettings):
     def _names_a_folder(cls, value: Any) -> Any:
         if value == "":  # Path("") would be the current working directory
             raise ValueError("is empty: name a folder, or leave it unset")
+        return value
+
+    @field_validator("trusted_proxies", "cors_origins", mode="before")
+    @classmethod
+    def _split(cls, value: Any) -> Any:
+        if not isinstance(value, str):
+            return value
+        return tuple(part.strip() for part in value.split(",") if part.strip())
+
+    @field_validator("trusted_proxies")
+    @classmethod
+    def _are_networks(cls, value: tuple[str, ...]) -> tuple[str, ...]:
+        for network in value:
+            try:
+                ipaddress.ip_network(network)
+            except ValueError:
+                raise ValueError(f"expected addresses or networks, found {network!r}") from None
+        return value
+
+    @field_validator("cors_origins")
+    @classmethod
+    def _are_origins(cls, value: tuple[str, ...]) -> tuple[str, ...]:
+        for origin in value:
+            if not _ORIGIN.fullmatch(origin):
+                raise ValueError(f"expected origins as in https://viewer.example, found {origin!r}")
+        return tuple(origin.lower() for origin in value)
+
+    @field_validator("root_path")
+    @classmethod
+    def _is_root_path(cls, value: str) -> str:
+        if not _ROOT_PATH.fullmatch(value):
+            raise ValueError("must begin with a slash and not end with one, as in /kinedex")
         return value
 
     @field_validator("job_heartbeat_s")
@@ -300,4 +359,6 @@ def _as_typed(default: object) -> str:
         return ""
     if isinstance(default, bool):
         return str(default).lower()
+    if isinstance(default, tuple):
+        return ",".join(default)
     return str(default)

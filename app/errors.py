@@ -169,6 +169,12 @@ class BadField(KinedexError):
     code = "bad_field"
 
 
+class IdempotencyKeyReused(BadField):
+    """This Idempotency-Key was used for a call with another body."""
+
+    code = "idempotency_key_reused"
+
+
 class NotFound(KinedexError):
     """There is nothing with this id or name."""
 
@@ -185,6 +191,12 @@ class JobNotFound(NotFound):
     """There is no job with this id."""
 
     code = "job_not_found"
+
+
+class WebhookNotFound(NotFound):
+    """There is no webhook with this id."""
+
+    code = "webhook_not_found"
 
 
 class StoredFileMissing(NotFound):
@@ -231,6 +243,24 @@ class AlreadyVoted(Conflict):
     """This voter has already voted on this sequence."""
 
     code = "already_voted"
+
+
+class CallInProgress(Conflict):
+    """A call with this Idempotency-Key is still running; ask again shortly."""
+
+    code = "call_in_progress"
+
+
+class CallOvertaken(Conflict):
+    """This call was given up, so its change was undone."""
+
+    code = "call_overtaken"
+
+
+class AnswerLost(Conflict):
+    """The call with this Idempotency-Key made its change, but its answer was lost."""
+
+    code = "answer_lost"
 
 
 class LeaseLost(Conflict):

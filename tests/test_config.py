@@ -136,6 +136,43 @@ def test_impossible_times_and_folders_are_refused(
         load_settings()
 
 
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("KINEDEX_CORS_ORIGINS", "*"),
+        ("KINEDEX_CORS_ORIGINS", "https://a.example, b.example"),
+        ("KINEDEX_CORS_ORIGINS", "https://a.example/"),
+        ("KINEDEX_CORS_ORIGINS", "null"),
+        ("KINEDEX_TRUSTED_PROXIES", "*"),
+        ("KINEDEX_TRUSTED_PROXIES", "10.0.0.0/8, proxy.example"),
+        ("KINEDEX_ROOT_PATH", "kinedex"),
+        ("KINEDEX_ROOT_PATH", "/kinedex/"),
+        ("KINEDEX_ROOT_PATH", "/"),
+    ],
+)
+def test_what_is_no_origin_no_proxy_and_no_path_is_refused(
+    monkeypatch: pytest.MonkeyPatch, name: str, value: str
+) -> None:
+    monkeypatch.setenv(name, value)
+    with pytest.raises(ConfigurationError, match=name):
+        load_settings()
+
+
+def test_lists_are_written_with_commas_or_as_toml(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("KINEDEX_CORS_ORIGINS", "https://A.example ,http://b.example:8080,")
+    monkeypatch.setenv("KINEDEX_TRUSTED_PROXIES", "10.0.0.0/8,::1")
+    settings = load_settings()
+    assert settings.cors_origins == ("https://a.example", "http://b.example:8080")
+    assert settings.trusted_proxies == ("10.0.0.0/8", "::1")
+    monkeypatch.delenv("KINEDEX_CORS_ORIGINS")
+    file = tmp_path / "own.toml"
+    file.write_text('cors_origins = ["https://c.example"]\n')
+    monkeypatch.setenv(CONFIG_FILE_ENV, str(file))
+    assert load_settings().cors_origins == ("https://c.example",)
+
+
 def test_the_password_of_the_database_is_not_shown(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("KINEDEX_DATABASE_URL", "postgresql://me:hunter2@db/kinedex")
     settings = load_settings()

@@ -12,11 +12,14 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi_offline import FastAPIOffline
 
 from app.api.docs import STATIC, install_docs
-from app.api.examples import example_ids
+from app.api.examples import example_values
 from app.api.failures.handlers import install_handlers
 from app.api.guard.access_check import AccessCheck
+from app.api.guard.compression import Compression
+from app.api.guard.cors import Cors
 from app.api.guard.envelope import Envelope
 from app.api.guard.gates import Gates
+from app.api.guard.idempotency import Idempotency
 from app.api.guard.limits import BodyLimit
 from app.api.guard.methods import KnownMethods
 from app.api.guard.slow_bodies import SlowBodies
@@ -43,10 +46,12 @@ from app.api.routes import (
     suggestions,
     symbols,
     synthesize,
+    webhooks,
 )
 from app.api.schemas.recognition import Recognize
 from app.api.schemas.search import MotionSearch
 from app.api.schemas.synthesis import Synthesize
+from app.api.validators import install_validators
 from app.config import Settings
 from app.errors import KinedexError
 from app.services.library.library import Library
@@ -54,10 +59,11 @@ from app.services.library.library import Library
 _SUMMARY = "Search human motion by example and by words, and ask who does what."
 _DESCRIPTION = """\
 Store a clip with `POST /v1/clips`, follow its job until the clip is `ready`, then search with
-its id. The examples name the newest clip and job of this library, so they can be run as they
-are; where you read `CLIP_ID`, reload this page once there is a clip.
+its id. The examples name clips, jobs, persons and other objects of this library, so that you can
+run them unchanged. If you read `CLIP_ID`, `PERSON` or another word in capitals, there is no such
+object yet, or calls need a key.
 
-Times are ISO 8601 in UTC, durations seconds. Lists are `{"items": [...], "next": cursor}`.
+Times are ISO 8601 in UTC, durations seconds. Lists are `{"items": [...], "next": cursor, ...}`.
 Every failure is a problem (RFC 9457, `application/problem+json`).
 """
 ROUTES = (
@@ -79,6 +85,7 @@ ROUTES = (
     space,
     studies,
     segments,
+    webhooks,
     health,
 )
 
@@ -103,16 +110,21 @@ def create_app(settings: Settings) -> FastAPI:
     app.state.start_failure = None
     app.state.gates = Gates.of(settings.request_timeout_s)
     install_handlers(app)
+    install_validators(app)
     for module in ROUTES:
         app.include_router(module.router)
     install_docs(app)
-    describe(app, [MotionSearch, Recognize, Synthesize], lambda: example_ids(app.state.library))
+    describe(app, [MotionSearch, Recognize, Synthesize], lambda: example_values(app.state.library))
     # The last one added is the outermost.
+    app.add_middleware(Idempotency)
     app.add_middleware(BodyLimit, settings=settings)
     app.add_middleware(SlowBodies, settings=settings)
     app.add_middleware(AccessCheck)
+    if settings.cors_origins:
+        app.add_middleware(Cors, origins=settings.cors_origins)
     install_metrics(app)
     app.add_middleware(KnownMethods)
+    app.add_middleware(Compression)
     app.add_middleware(Envelope)
     return app
 

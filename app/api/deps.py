@@ -56,3 +56,4 @@ class Allows:
 
 reads = Depends(Allows(KeyRole.READ))
 writes = Depends(Allows(KeyRole.WRITE))
+administers = Depends(Allows(KeyRole.ADMIN))

@@ -1,19 +1,20 @@
-"""Ids for the examples of `/docs`: with them, a reader can run the examples unchanged."""
+"""Ids and names for the examples of `/docs`: with them, a reader can run the examples unchanged."""
 
 from __future__ import annotations
 
 from app.api.guard.callers import is_open
+from app.services.library.fitted_models import KINDS_WITH_UNKNOWN
 from app.services.library.library import Library
+from app.store import models, studies
 from app.store.clips import listing as clip_listing
-from app.store.clips.filter import ClipFilter
-from app.store.clips.record import ClipState
+from app.store.database.engine import Tx
 from app.store.jobs import repository as jobs
+from app.store.jobs.record import JobKind
+from app.store.webhooks import repository as webhooks
 
-_READY = ClipFilter(state=(ClipState.READY,))
 
-
-def example_ids(library: Library | None) -> dict[str, str]:
-    """Return the ids of the newest ready clip and of the newest job, by placeholder.
+def example_values(library: Library | None) -> dict[str, str]:
+    """Return values of this library by placeholder; a placeholder without a value is left out.
 
     The result is empty if calls need a key: everyone may read the description, but not the ids.
     """
@@ -22,11 +23,31 @@ def example_ids(library: Library | None) -> dict[str, str]:
     with library.store.read() as tx:
         if not is_open(library, tx):
             return {}
-        clips = clip_listing.list_clips(tx, _READY, limit=1).items
-        newest = jobs.list_jobs(tx, limit=1).items
-    ids = {}
-    if clips:
-        ids["CLIP_ID"] = clips[0].id
-    if newest:
-        ids["JOB_ID"] = newest[0].id
-    return ids
+        found = {**_of_clips(tx), **_of_others(tx)}
+    return {placeholder: value for placeholder, value in found.items() if value is not None}
+
+
+def _of_clips(tx: Tx) -> dict[str, str | None]:
+    labeled = clip_listing.newest_ready(tx, is_labeled=True)
+    chosen = labeled or clip_listing.newest_ready(tx)
+    audible = clip_listing.newest_ready(tx, is_audible=True)
+    return {
+        "CLIP_ID": None if chosen is None else chosen.id,
+        "AUDIO_CLIP_ID": None if audible is None else audible.id,
+        "PERSON": None if labeled is None else labeled.person,
+        "TASK": None if labeled is None else labeled.task,
+    }
+
+
+def _of_others(tx: Tx) -> dict[str, str | None]:
+    # The newest fit cannot be deleted, so a fit would be a bad example.
+    analysis = jobs.list_jobs(tx, kind=JobKind.INGEST, limit=1).items
+    pairs = studies.list_pairs(tx, limit=1).items
+    registered = webhooks.list_all(tx)
+    recognizer = [one for one in models.list_current(tx) if one.kind in KINDS_WITH_UNKNOWN]
+    return {
+        "JOB_ID": analysis[0].id if analysis else None,
+        "PAIR_ID": pairs[0].id if pairs else None,
+        "WEBHOOK_ID": registered[0].id if registered else None,
+        "MODEL_ID": recognizer[0].id if recognizer else None,
+    }

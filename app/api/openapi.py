@@ -14,8 +14,12 @@ from fastapi.openapi.utils import get_openapi
 from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
+from app import errors
 from app.api.failures import problems
+from app.api.failures.problems import problem_of
+from app.api.guard.idempotency import HEADER, takes_key
 from app.api.schemas.problem import Problem
+from app.errors import KinedexError, Place
 
 _REF = "#/components/schemas/{model}"
 _DESCRIPTIONS = {
@@ -33,9 +37,38 @@ _DESCRIPTIONS = {
     "`Retry-After`",
     507: "The disk is full; nothing was stored",
 }
+_EXAMPLES: dict[int, KinedexError] = {
+    400: problems.MalformedBody("The body is not valid JSON."),
+    401: errors.Unauthorized("This key is not valid."),
+    403: errors.Forbidden("This needs a key with the role write."),
+    404: errors.ClipNotFound(
+        "There is no clip with the id 'clip_1'", places=[Place("path.clip_id", "is no clip's id")]
+    ),
+    408: problems.RequestTimeout("The body came too slowly."),
+    409: errors.ClipNotReady("The clip clip_1 is queued; ask again after that."),
+    413: errors.TooLarge("The body is larger than the limit of 210763776 bytes."),
+    415: problems.UnsupportedMediaType("This call takes application/json."),
+    422: errors.BadField(
+        "The request has fields that are wrong.",
+        places=[Place("query.limit", "Input should be less than or equal to 1000")],
+    ),
+    500: KinedexError(),
+    503: problems.TooBusy("Too many heavy calls are waiting; try again shortly."),
+    507: errors.DiskFull(),
+}
+"""A failure of each status, as the example of the problem."""
 _EVERYWHERE = (401, 403, 422, 500, 503)
 _WITH_A_BODY = (408, 413)
 """Statuses of every call that has a body. A route with a body lists 413."""
+_IDEMPOTENCY_KEY = {
+    "name": HEADER,
+    "in": "header",
+    "required": False,
+    "schema": {"type": "string", "minLength": 1, "maxLength": 255},
+    "description": "A random text that you choose for this call. If you send the call again with "
+    "the same text within 24 hours, it takes no effect again and returns the first answer. With "
+    "another body it is refused (422); while the first call runs, it answers 409.",
+}
 _REQUEST_ID = {
     "name": "X-Request-Id",
     "in": "header",
@@ -45,14 +78,18 @@ _REQUEST_ID = {
 }
 
 
+def _id(what: str, placeholder: str) -> Any:
+    """The path parameter of an id. `describe` replaces the placeholder by a real id."""
+    return Path(max_length=MAX_ID_LENGTH, openapi_examples={what: {"value": placeholder}})
+
+
 MAX_ID_LENGTH = 100
-ClipId = Annotated[
-    str, Path(max_length=MAX_ID_LENGTH, openapi_examples={"a clip": {"value": "CLIP_ID"}})
-]
-JobId = Annotated[
-    str, Path(max_length=MAX_ID_LENGTH, openapi_examples={"a job": {"value": "JOB_ID"}})
-]
-PairId = Annotated[str, Path(max_length=MAX_ID_LENGTH)]
+ClipId = Annotated[str, _id("a clip", "CLIP_ID")]
+AudioClipId = Annotated[str, _id("a clip with a recording", "AUDIO_CLIP_ID")]
+JobId = Annotated[str, _id("a job", "JOB_ID")]
+PairId = Annotated[str, _id("a pair", "PAIR_ID")]
+ModelId = Annotated[str, _id("a recognizer", "MODEL_ID")]
+WebhookId = Annotated[str, _id("a webhook", "WEBHOOK_ID")]
 
 
 def refusals(*statuses: int) -> dict[int | str, dict[str, Any]]:
@@ -62,7 +99,9 @@ def refusals(*statuses: int) -> dict[int | str, dict[str, Any]]:
     return {
         status: {
             "description": _DESCRIPTIONS[status],
-            "content": {problems.MEDIA_TYPE: {"schema": schema}},
+            "content": {
+                problems.MEDIA_TYPE: {"schema": schema, "example": problem_of(_EXAMPLES[status])}
+            },
         }
         for status in sorted({*statuses, *_EVERYWHERE, *with_a_body})
     }
@@ -108,10 +147,31 @@ def _form_schema(
         name: {"type": "string", "format": "binary", "description": text}
         for name, text in files.items()
     }
-    schema["properties"] = {**uploads, **schema["properties"]}
+    texts = {name: _text_field(field) for name, field in schema["properties"].items()}
+    schema["properties"] = {**uploads, **texts}
     if needed:
         schema["required"] = list(needed)
     return schema
+
+
+_CONTENT = {"contentMediaType", "contentSchema"}
+
+
+def _text_field(field: dict[str, Any]) -> dict[str, Any]:
+    """The schema of a text field as people fill it in.
+
+    Without null, because a form leaves out a field that has no value; without the media type of
+    the text, because Swagger UI asks for a file then. The example of a field that is usually left
+    out is an empty text, also if the field is a number: else Swagger UI invents a value and sends
+    it.
+    """
+    kinds = [kind for kind in field.get("anyOf", ()) if kind != {"type": "null"}]
+    if len(kinds) == 1:
+        field = {**kinds[0], **field}
+        del field["anyOf"]
+        field = {name: value for name, value in field.items() if value is not None}
+    kept = {name: value for name, value in field.items() if name not in _CONTENT}
+    return kept if {"examples", "default"} & kept.keys() else {**kept, "examples": [""]}
 
 
 def describe(
@@ -119,8 +179,8 @@ def describe(
 ) -> None:
     """Add the schemas of `bodies` and of problems to `app.openapi()`. It is built once.
 
-    ids: returns the ids that replace CLIP_ID and JOB_ID in the examples, by placeholder. With
-    real ids, the examples can be run.
+    ids: returns the values that replace CLIP_ID, PERSON and so on in the examples, by placeholder
+    (`app.api.examples`). With real ids, the examples can be run.
     """
 
     def openapi() -> dict[str, Any]:
@@ -157,4 +217,13 @@ def _build(app: FastAPI, bodies: Sequence[type[BaseModel]]) -> dict[str, Any]:
     )
     schemas = description.setdefault("components", {}).setdefault("schemas", {})
     schemas.update(extra.get("$defs", {}))
+    _add_idempotency_keys(description["paths"])
     return description
+
+
+def _add_idempotency_keys(paths: dict[str, Any]) -> None:
+    for path, item in paths.items():
+        for method, operation in item.items():
+            if takes_key(method, path):
+                operation.setdefault("parameters", []).append(_IDEMPOTENCY_KEY)
+                operation["responses"].setdefault("409", refusals(409)[409])

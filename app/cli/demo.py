@@ -48,6 +48,7 @@ def _import_demo(context: typer.Context) -> None:
     """Generate the demo clips into a temporary folder, import them, and fit the models."""
     from app.cli.library import fit_if_due, follow, register, working
     from app.demo.library import write_demo
+    from app.services.examples import add_examples
 
     with open_library(context) as lib, tempfile.TemporaryDirectory() as folder:
         count = write_demo(Path(folder))
@@ -56,6 +57,7 @@ def _import_demo(context: typer.Context) -> None:
         with working(lib):
             follow(lib, job.id, "analyzing")
             fit_if_due(lib)
+        add_examples(lib)
 
 
 def _print_url_when_ready(settings: Settings) -> None:

@@ -160,7 +160,7 @@ def _print_hits(hits: Hits, as_json: bool, *, by_words: bool, with_times: bool) 
     if as_json:
         from app.api.schemas.search import MotionHits, WordHits
 
-        answer = WordHits.of(hits) if by_words else MotionHits.of(hits)
+        answer = (WordHits if by_words else MotionHits).model_validate(hits)
         print_json(answer.model_dump(mode="json"))
         return
     print_table(

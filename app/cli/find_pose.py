@@ -71,7 +71,7 @@ def search_pose(
     if as_json:
         from app.api.schemas.pose import PoseHits
 
-        print_json(PoseHits.of(hits).model_dump(mode="json"))
+        print_json(PoseHits.model_validate(hits).model_dump(mode="json"))
         return
     columns = ("rank", "score", "time", "name", "person", "task", "id")
     rows = [

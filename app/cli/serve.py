@@ -18,12 +18,17 @@ UNHEALTHY = 1
 
 Host = Annotated[str | None, typer.Option(help="Address to listen on [KINEDEX_HOST].")]
 Port = Annotated[int | None, typer.Option(help="Port to listen on [KINEDEX_PORT].")]
+RootPath = Annotated[
+    str | None,
+    typer.Option(help="Path below which a reverse proxy shows it [KINEDEX_ROOT_PATH]."),
+]
 
 
 def serve(
     context: typer.Context,
     host: Host = None,
     port: Port = None,
+    root_path: RootPath = None,
     with_worker: Annotated[
         bool, typer.Option("--worker/--no-worker", help="Whether to run a worker too.")
     ] = True,
@@ -34,7 +39,7 @@ def serve(
     from app.store import identity
     from app.worker.supervisor import supervise
 
-    settings = settings_of(context, host=host, port=port)
+    settings = settings_of(context, host=host, port=port, root_path=root_path)
     configure_logging(settings.log_level.upper())
     identity.prepare(settings.database, settings.files_dir)
     refuse_exposure_without_keys(settings)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Self, TypeVar
 
 from app.errors import DiskFull, StorageError
+from app.store import keyed_calls
 from app.store.database.engine import ERASE_WAIT_S, Database, Tx
 from app.store.files.files import FileStore
 from app.store.files.reserve import Reserve
@@ -50,6 +51,7 @@ class Store:
         """
         with self.database.write() as tx:
             yield tx
+            keyed_calls.mark(tx)
             has_removals = removals.settle(tx)
         if has_removals:
             self.finish_removals()

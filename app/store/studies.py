@@ -15,6 +15,7 @@ from app.store.database.engine import Tx
 from app.store.database.ids import new_id, utc_now
 from app.store.database.paging import Page, Position, after, read_cursor, write_cursor
 from app.store.database.tables import study_pairs, study_votes
+from app.store.database.totals import Total, total_of
 
 NEWEST_FIRST = "-created_at"
 
@@ -106,6 +107,11 @@ def list_pairs(tx: Tx, *, limit: int = 50, cursor: str | None = None) -> Page[Pa
     if len(items) <= limit:
         return Page(shown, None)
     return Page(shown, write_cursor(NEWEST_FIRST, Position(shown[-1].created_at, shown[-1].id)))
+
+
+def total_pairs(tx: Tx) -> Total:
+    """How many pairs there are; an estimate if there are many."""
+    return total_of(tx, select(study_pairs.c.id))
 
 
 def delete_pair(tx: Tx, pair_id: str) -> None:

@@ -31,6 +31,7 @@ from app.store.jobs import leases, outcomes, owners, queue
 from app.store.jobs.abandoned_jobs import Watch
 from app.store.jobs.record import ClaimedJob, JobKind
 from app.store.workers import Heartbeat
+from app.worker.deliveries import Deliveries
 from app.worker.executors import JobExecutors
 from app.worker.expiry import Expiry
 from app.worker.running import RunningJob
@@ -63,8 +64,10 @@ def run_worker(
     """
     lib = Library.open(settings)
     sweeps = Sweeps(lib.store, settings.quarantine_days)
+    webhooks = Deliveries(lib.store)
     try:
         swept = sweeps.begin()
+        webhooks.begin()
         if not settings.recognize_persons:
             persons.remove_person_models(lib)
         outdated = reanalysis.requeue_outdated(lib)
@@ -76,6 +79,7 @@ def run_worker(
             worker.close()
     finally:
         sweeps.end()
+        webhooks.end()
         lib.close()
 
 

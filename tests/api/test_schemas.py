@@ -21,6 +21,7 @@ from app.store.clips.record import (
     ClipWarning,
 )
 from app.store.database.paging import Page
+from app.store.database.totals import Total
 from app.store.jobs.record import JobKind, JobRecord, JobState
 from tests.api.test_clips import CLIP_FIELDS
 
@@ -99,8 +100,8 @@ def test_answers_with_other_answers_inside_are_built_at_once() -> None:
     assert created.clip == Clip.model_validate(CLIP)
     assert created.job == Job.model_validate(JOB)
     assert set(created.model_dump()) == {"clip", "job", "differences"}
-    page = ClipList.model_validate(Page((CLIP,), "more"))
-    assert (page.items, page.next) == ([created.clip], "more")
+    page = ClipList.model_validate(Page((CLIP,), "more").counted(Total(7)))
+    assert (page.items, page.next, page.total) == ([created.clip], "more", 7)
 
 
 def test_every_label_and_hint_has_its_check_its_form_field_and_its_column() -> None:

@@ -103,7 +103,7 @@ def test_a_call_with_two_bodies_has_an_optional_parameter(idle: httpx2.Client) -
     }
     assert set(two_bodies) == {"/v1/search/motion", "/v1/recognize"}
     for parameters in two_bodies.values():
-        assert [(one["name"], one["required"]) for one in parameters] == [("X-Request-Id", False)]
+        assert ("X-Request-Id", False) in [(one["name"], one["required"]) for one in parameters]
 
 
 def test_the_examples_fit_their_schemas(idle: httpx2.Client) -> None:

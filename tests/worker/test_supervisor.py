@@ -144,13 +144,18 @@ def _is_running(pid: int) -> bool:
 
 def test_all_settings_reach_the_processes(tmp_path: Path) -> None:
     settings = Settings(
-        data_dir=tmp_path, port=8123, require_keys=True, database_url="sqlite:///x.sqlite3"
+        data_dir=tmp_path,
+        port=8123,
+        require_keys=True,
+        database_url="sqlite:///x.sqlite3",
+        trusted_proxies="10.0.0.1, 10.0.0.2",
     )
     variables = environment(settings)
     assert variables["KINEDEX_DATA_DIR"] == str(tmp_path)
     assert variables["KINEDEX_PORT"] == "8123"
     assert variables["KINEDEX_REQUIRE_KEYS"] == "true"
     assert variables["KINEDEX_DATABASE_URL"] == "sqlite:///x.sqlite3"
+    assert variables["KINEDEX_TRUSTED_PROXIES"] == "10.0.0.1,10.0.0.2"
 
 
 @pytest.mark.parametrize("arguments", [supervisor.API, supervisor.WORKER], ids=["api", "worker"])

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import errno
 import logging
+from http import HTTPMethod
 from typing import cast
 
 from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
+from starlette.routing import BaseRoute, Match
+from starlette.types import Scope
 
 from app.api.failures.problems import (
     RETRY_AFTER_SECONDS,
@@ -24,6 +27,7 @@ from app.api.failures.response import respond
 from app.errors import (
     AnalysisInterrupted,
     BadField,
+    CallInProgress,
     Conflict,
     DeadlineExceeded,
     DiskFull,
@@ -75,6 +79,8 @@ def _headers(failure: KinedexError) -> dict[str, str]:
         return {"WWW-Authenticate": "Bearer"}
     if isinstance(failure, _TEMPORARY):
         return {"Retry-After": RETRY_AFTER_SECONDS}
+    if isinstance(failure, CallInProgress):
+        return {"Retry-After": RETRY_AFTER_SECONDS}
     if isinstance(failure, ModelBeingFitted):
         return {"Retry-After": FIT_SECONDS}
     return {}
@@ -103,6 +109,24 @@ async def _on_validation(_request: Request, error: Exception) -> Response:
     return respond(problem_of_validation(cast(RequestValidationError, error).errors()))
 
 
-async def _on_http(_request: Request, error: Exception) -> Response:
+async def _on_http(request: Request, error: Exception) -> Response:
     refusal = cast(HTTPException, error)
+    if refusal.status_code == 405:
+        allowed = ", ".join(_methods_of(request))
+        detail = f"This path takes {allowed}, not {request.method}."
+        return respond(problem_of_http(405, detail), {"Allow": allowed})
     return respond(problem_of_http(refusal.status_code, refusal.detail), refusal.headers)
+
+
+def _methods_of(request: Request) -> list[str]:
+    """The methods of all routes of the path. The router names those of the first one only."""
+    routes: list[BaseRoute] = request.app.routes
+    return [
+        method.value
+        for method in sorted(HTTPMethod)
+        if any(_takes(route, {**request.scope, "method": method.value}) for route in routes)
+    ]
+
+
+def _takes(route: BaseRoute, scope: Scope) -> bool:
+    return route.matches(scope)[0] is Match.FULL

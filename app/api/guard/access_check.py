@@ -57,6 +57,6 @@ class AccessCheck:
         # For the log, which also names the key of a call that is refused.
         scope.setdefault("state", {})["caller"] = caller
         if caller.is_free:
-            refuse_other_sites(scope)
+            refuse_other_sites(scope, library.settings.cors_origins)
         if scope["method"] not in WITHOUT_BODY:
             caller.require_key()

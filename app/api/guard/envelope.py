@@ -22,6 +22,9 @@ SECURITY_HEADERS = {
 }
 """Headers of every answer. An answer that needs another policy sets its own."""
 
+SUCCESSES = range(200, 300)
+"""Statuses of answers that get the headers in `request.state.answer_headers`."""
+
 
 class CutOff(Exception):
     """An answer ends early, and its connection is closed. status: the status for the log."""
@@ -56,7 +59,10 @@ class Envelope:
             nonlocal status
             if message["type"] == "http.response.start":
                 status = message["status"]
-                _complete(MutableHeaders(scope=message), identity)
+                headers = MutableHeaders(scope=message)
+                if status in SUCCESSES:
+                    headers.update(scope.get("state", {}).get("answer_headers", {}))
+                _complete(headers, identity)
             await send(message)
 
         try:

@@ -14,6 +14,7 @@ headers show this:
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 
 from starlette.datastructures import Headers
 from starlette.types import Scope
@@ -31,12 +32,18 @@ PAGES = frozenset({"", "/docs"})
 """Paths that a link on another site may open."""
 
 
-def refuse_other_sites(scope: Scope) -> None:
-    """Raises Forbidden if a request may come from a page of another site."""
+def refuse_other_sites(scope: Scope, allowed: Collection[str] = ()) -> None:
+    """Raises Forbidden if a request may come from a page of another site.
+
+    allowed: origins whose pages may call (`KINEDEX_CORS_ORIGINS`).
+    """
     headers = Headers(scope=scope)
     host = _own_host(headers)
     own = f"{scope['scheme']}://{host}"
-    if any(origin.lower() != own for origin in headers.getlist("origin")):
+    origins = [origin.lower() for origin in headers.getlist("origin")]
+    if len(origins) == 1 and origins[0] in allowed:
+        return
+    if any(origin != own for origin in origins):
         raise Forbidden("Without API keys, calls from another site are not answered.")
     sites = headers.getlist("sec-fetch-site")
     if not OWN_SITES.issuperset(sites) and not _opens_a_page(scope, headers):

@@ -11,6 +11,7 @@ from app.api.guard.admission import heavy
 from app.api.openapi import ClipId, refusals
 from app.api.schemas.views import Descriptor, Motion, MotionQueryParameters
 from app.api.streams import OCTETS, as_json, as_octets, prefers_octets
+from app.api.validators import UNCHANGED, of_one_clip
 from app.services.views import views
 
 router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads])
@@ -27,9 +28,10 @@ OCTET_ANSWER = {"content": {OCTETS: _OCTETS}, "headers": {"X-Shape": _SHAPE}}
 @router.get(
     "/motion",
     response_model=Motion,
-    dependencies=[heavy],
+    dependencies=[of_one_clip, heavy],
     responses={
         200: OCTET_ANSWER,
+        304: UNCHANGED,
         **refusals(404, 409),
     },
 )
@@ -41,7 +43,11 @@ def get_motion(
     return as_octets(view) if prefers_octets(request) else as_json(view)
 
 
-@router.get("/descriptor", dependencies=[heavy], responses=refusals(404, 409))
+@router.get(
+    "/descriptor",
+    dependencies=[of_one_clip, heavy],
+    responses={304: UNCHANGED, **refusals(404, 409)},
+)
 def get_descriptor(lib: Lib, clip_id: ClipId) -> Descriptor:
     """The arrays by which the clip is compared with others."""
     return Descriptor.of(views.descriptor(lib, clip_id))
@@ -49,13 +55,14 @@ def get_descriptor(lib: Lib, clip_id: ClipId) -> Descriptor:
 
 @router.get(
     "/thumbnail.svg",
-    dependencies=[heavy],
+    dependencies=[of_one_clip, heavy],
     response_class=Response,
     responses={
         200: {
             "description": "A few stick figures over time.",
             "content": {"image/svg+xml": {"schema": {"type": "string"}}},
         },
+        304: UNCHANGED,
         **refusals(404, 409),
     },
 )

@@ -13,9 +13,11 @@ from starlette.datastructures import UploadFile
 from app.api.bodies import read_form, require_json, required
 from app.api.deps import Lib, reads, writes
 from app.api.guard.admission import changes, quick
-from app.api.openapi import ClipId, body, refusals
+from app.api.openapi import AudioClipId, ClipId, body, refusals
 from app.api.queries import file_of
 from app.api.schemas.clips import Clip, ClipCreated, ClipForm, ClipList, ClipPatch, ClipQuery
+from app.api.sparse import ChosenFields, sparse_item, sparse_page
+from app.api.validators import UNCHANGED, validate, weak_tag
 from app.errors import ClipNotFound
 from app.services.clips import catalogue as clips
 from app.services.clips.catalogue import StoredFile
@@ -78,21 +80,31 @@ def _recording(uploads: dict[str, UploadFile]) -> NewRecording | None:
     return None if sent is None else NewRecording(sent.file, sent.filename or "audio")
 
 
-@router.get("", dependencies=[reads, quick], responses=refusals())
-def list_clips(lib: Lib, query: Annotated[ClipQuery, Query()]) -> ClipList:
+@router.get("", dependencies=[reads, quick], response_model=ClipList, responses=refusals())
+def list_clips(lib: Lib, query: Annotated[ClipQuery, Query()]) -> ClipList | Response:
     """List the clips that pass every filter. Repeat a label parameter to accept several values.
 
     `meta.KEY=VALUE` filters by metadata, `not_meta.KEY=VALUE` leaves clips with that value out, and
     `meta.KEY.min=30`, `meta.KEY.max=40` filter by a number; `GET /v1/metadata` lists the keys.
     """
     page = clips.list_clips(lib, query.as_filter(), query.sort, query.limit, query.cursor)
-    return ClipList.model_validate(page)
+    chosen = query.fields
+    return sparse_page(ClipList, chosen, page) if chosen else ClipList.model_validate(page)
 
 
-@router.get("/{clip_id}", dependencies=[reads, quick], responses=refusals(404))
-def get_clip(lib: Lib, clip_id: ClipId) -> Clip:
+@router.get(
+    "/{clip_id}",
+    dependencies=[reads, quick],
+    response_model=Clip,
+    responses={304: UNCHANGED, **refusals(404)},
+)
+def get_clip(
+    lib: Lib, request: Request, clip_id: ClipId, fields: ChosenFields = None
+) -> Clip | Response:
     """One clip."""
-    return Clip.model_validate(clips.get_clip(lib, clip_id))
+    clip = clips.get_clip(lib, clip_id)
+    validate(request, weak_tag(clip, fields))
+    return sparse_item(Clip, fields, clip) if fields else Clip.model_validate(clip)
 
 
 @router.patch(
@@ -120,12 +132,13 @@ def delete_clip(lib: Lib, clip_id: ClipId) -> None:
     response_class=FileResponse,
     responses={
         200: {"content": {"application/octet-stream": {}}, "description": "The original bytes."},
+        304: UNCHANGED,
         **refusals(404),
     },
 )
-def get_file(lib: Lib, clip_id: ClipId) -> FileResponse:
+def get_file(lib: Lib, request: Request, clip_id: ClipId) -> FileResponse:
     """The original file, as an attachment: a browser must not show foreign content as a page."""
-    return _attachment(clips.open_file(lib, clip_id), clip_id)
+    return _attachment(request, clips.open_file(lib, clip_id), clip_id)
 
 
 @router.get(
@@ -134,21 +147,24 @@ def get_file(lib: Lib, clip_id: ClipId) -> FileResponse:
     response_class=FileResponse,
     responses={
         200: {"content": {"application/octet-stream": {}}, "description": "The original bytes."},
+        304: UNCHANGED,
         **refusals(404),
     },
 )
-def get_audio(lib: Lib, clip_id: ClipId) -> FileResponse:
+def get_audio(lib: Lib, request: Request, clip_id: AudioClipId) -> FileResponse:
     """The recording that goes with a clip, as an attachment."""
-    return _attachment(clips.open_recording(lib, clip_id), clip_id)
+    return _attachment(request, clips.open_recording(lib, clip_id), clip_id)
 
 
 @router.delete("/{clip_id}/audio", dependencies=[writes, changes], responses=refusals(404))
-def delete_audio(lib: Lib, clip_id: ClipId) -> Clip:
+def delete_audio(lib: Lib, clip_id: AudioClipId) -> Clip:
     """Delete the recording that goes with a clip. The clip is analyzed again."""
     return Clip.model_validate(clips.remove_recording(lib, clip_id))
 
 
-def _attachment(file: StoredFile, clip_id: str) -> FileResponse:
+def _attachment(request: Request, file: StoredFile, clip_id: str) -> FileResponse:
+    tag = f'"{file.sha256}"'
+    validate(request, tag)
     try:
         content = file.path.open("rb")
     except FileNotFoundError as error:
@@ -160,5 +176,6 @@ def _attachment(file: StoredFile, clip_id: str) -> FileResponse:
         media_type="application/octet-stream",
         filename=file.name,
         content_disposition_type="attachment",
+        headers={"ETag": tag},
         background=BackgroundTask(content.close),
     )

@@ -15,6 +15,7 @@ from app.api.guard.admission import heavy
 from app.api.openapi import ClipId, refusals
 from app.api.pieces import Pieces
 from app.api.schemas.export import ExportQuery
+from app.api.validators import UNCHANGED, of_one_clip
 from app.services.views.export import export
 from app.services.views.export_format import ExportFormat
 
@@ -110,7 +111,7 @@ run, times that need the foot off are empty: the method does not find it there.
 @router.get(
     "/export",
     response_class=StreamingResponse,
-    dependencies=[heavy],
+    dependencies=[of_one_clip, heavy],
     description=DESCRIPTION,
     responses={
         200: {
@@ -120,6 +121,7 @@ run, times that need the foot off are empty: the method does not find it there.
                 for kind in MEDIA_TYPES.values()
             },
         },
+        304: UNCHANGED,
         **refusals(404, 409),
     },
 )

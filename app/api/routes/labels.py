@@ -25,6 +25,8 @@ from app.services.clips import discovery, labels, persons
 from app.services.clips.manifest_export import manifest
 from app.services.recognition import suggestions
 from app.store.clips.labels import LabelKind
+from app.store.database.paging import Page
+from app.store.database.totals import Total
 
 DEFAULT_WORDS, DEFAULT_COMPLETIONS = 1000, 10
 """Limits if the client sends none."""
@@ -58,7 +60,10 @@ def list_persons(lib: Lib, query: Annotated[LabelPage, Query()]) -> NamedCounts:
     dependencies=[writes, changes],
     responses=refusals(404),
 )
-def forget_person(lib: Lib, name: Annotated[str, Path(max_length=300)]) -> None:
+def forget_person(
+    lib: Lib,
+    name: Annotated[str, Path(max_length=300, openapi_examples={"a person": {"value": "PERSON"}})],
+) -> None:
     """Remove a person from all labels, and delete every model that holds the person.
 
     The person's name also leaves the names, paths, sources, words and metadata of clips, and the
@@ -83,8 +88,11 @@ def list_words(lib: Lib, query: Annotated[WordListQuery, Query()]) -> NamedCount
     if query.q is None:
         page = labels.page(lib, LabelKind.WORD, query.limit or DEFAULT_WORDS, query.cursor)
         return NamedCounts.model_validate(page)
-    found = suggestions.complete(lib, query.q, query.limit or DEFAULT_COMPLETIONS)
-    return NamedCounts.model_validate({"items": found})
+    limit = query.limit or DEFAULT_COMPLETIONS
+    found = tuple(suggestions.complete(lib, query.q, limit))
+    # A full page may be the first of several, which nobody counts.
+    page = Page(found, None).counted(Total(len(found), is_exact=len(found) < limit))
+    return NamedCounts.model_validate(page)
 
 
 @router.get("/metadata", dependencies=[quick])

@@ -17,6 +17,7 @@ from app.api.schemas.low_dimensional import (
     LowDimensionalQuery,
 )
 from app.api.streams import as_json, as_octets, prefers_octets
+from app.api.validators import UNCHANGED, of_one_clip
 from app.services.views import low_dimensional
 from app.services.views.animations import animation_svg
 
@@ -65,9 +66,9 @@ def get_low_dimensional(
 
 @router.get(
     "/animation.svg",
-    dependencies=[heavy],
+    dependencies=[of_one_clip, heavy],
     response_class=Response,
-    responses={200: SVG_ANSWER, **refusals(404, 409)},
+    responses={200: SVG_ANSWER, 304: UNCHANGED, **refusals(404, 409)},
 )
 def get_animation(lib: Lib, clip_id: ClipId, query: Annotated[AnimationQuery, Query()]) -> Response:
     """The clip as a moving stick figure. With `dimensions`, it shows the low-dimensional motion.

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
-from fastapi import APIRouter, Depends, Path
+from fastapi import APIRouter, Depends
 
 from app.api.bodies import require_json
 from app.api.deps import Lib, reads, writes
 from app.api.guard.admission import changes, quick
-from app.api.openapi import refusals
+from app.api.openapi import ModelId, refusals
 from app.api.schemas.jobs import Job, JobStarted
 from app.api.schemas.models import Model, ModelList, ModelPatch, UnfittedModel
 from app.services.training import models
@@ -32,9 +30,7 @@ def list_models(lib: Lib) -> ModelList:
     dependencies=[writes, Depends(require_json), changes],
     responses=refusals(400, 404, 413, 415),
 )
-def update_model(
-    lib: Lib, model_id: Annotated[str, Path(max_length=64)], patch: ModelPatch
-) -> Model:
+def update_model(lib: Lib, model_id: ModelId, patch: ModelPatch) -> Model:
     """Set the false-accept rate of a recognizer. It applies at once, and also after later fits."""
     record = models.set_false_accept_rate(lib, model_id, patch.false_accept_rate)
     return Model.of(record, active_errors(lib, record))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Request
+from fastapi import APIRouter, Depends, Request, Response
 
 from app.api.bodies import is_multipart, read_form, read_json, require_json
 from app.api.deps import Lib, reads
@@ -12,6 +12,7 @@ from app.api.guard.admission import heavy
 from app.api.openapi import body, refusals
 from app.api.queries import QUERY_FILES, source_of
 from app.api.schemas.search import MotionHits, MotionSearch, MotionSearchForm, WordHits, WordSearch
+from app.api.sparse import ChosenFields, sparse_page
 from app.services.find import find
 from app.services.find.queries import MotionQuery
 
@@ -48,6 +49,7 @@ async def _motion_query(request: Request) -> MotionQuery:
     "/motion",
     dependencies=[reads, Depends(_motion_query), heavy],  # takes a slot after the form has arrived
     responses=refusals(400, 404, 409, 413, 415, 503, 507),
+    response_model=MotionHits,
     openapi_extra=body(
         model=MotionSearch,
         examples=_MOTION_EXAMPLES,
@@ -55,23 +57,28 @@ async def _motion_query(request: Request) -> MotionQuery:
         files=QUERY_FILES,
     ),
 )
-def search_motion(lib: Lib, query: Annotated[MotionQuery, Depends(_motion_query)]) -> MotionHits:
+def search_motion(
+    lib: Lib, query: Annotated[MotionQuery, Depends(_motion_query)], fields: ChosenFields = None
+) -> MotionHits | Response:
     """Find motions like a stored clip, a part of one, or an uploaded file.
 
     With scope `windows`, find parts of clips, with their start and end. With scope `segments`,
     find motions from one keypose to the next.
     """
-    return MotionHits.of(find.find_motion(lib, query))
+    found = find.find_motion(lib, query)
+    return sparse_page(MotionHits, fields, found) if fields else MotionHits.model_validate(found)
 
 
 @router.post(
     "/words",
     dependencies=[reads, Depends(require_json), heavy],
+    response_model=WordHits,
     responses=refusals(400, 409, 413, 415),
 )
-def search_words(lib: Lib, sent: WordSearch) -> WordHits:
+def search_words(lib: Lib, sent: WordSearch, fields: ChosenFields = None) -> WordHits | Response:
     """Find motions for words, phrases or sentences. The most probable motion comes first.
 
     The `score` of a hit is a probability, in both modes.
     """
-    return WordHits.of(find.find_words(lib, sent.query()))
+    found = find.find_words(lib, sent.query())
+    return sparse_page(WordHits, fields, found) if fields else WordHits.model_validate(found)

@@ -28,6 +28,7 @@ from app.api.schemas.views import Motion
 from app.api.streams import as_json, as_octets, prefers_octets
 from app.services.views import studies
 from app.services.views.studies import Side
+from app.store.database.paging import Page
 
 router = APIRouter(tags=["studies"])
 
@@ -54,7 +55,8 @@ def draw_pair(lib: Lib, new: NewPair) -> Pair:
 def list_pairs(lib: Lib, query: Annotated[PairsQuery, Query()]) -> PairList:
     """Pairs, the newest first."""
     page = studies.list_pairs(lib, query.limit, query.cursor)
-    return PairList(items=[Pair.of(pair) for pair in page.items], next=page.next)
+    items = tuple(Pair.of(pair) for pair in page.items)
+    return PairList.model_validate(Page(items, page.next, page.total, page.total_is_exact))
 
 
 @router.get(PAIRS + "/{pair_id}", dependencies=[reads, quick], responses=refusals(404))

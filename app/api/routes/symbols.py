@@ -10,6 +10,7 @@ from app.api.openapi import ClipId, refusals
 from app.api.routes.clip_views import OCTET_ANSWER
 from app.api.schemas.symbols import SymbolMotion, channels_json
 from app.api.streams import as_json, as_octets, prefers_octets
+from app.api.validators import UNCHANGED, of_one_clip
 from app.services.views import symbol_motion
 
 router = APIRouter(tags=["clips"], dependencies=[reads])
@@ -18,8 +19,8 @@ router = APIRouter(tags=["clips"], dependencies=[reads])
 @router.get(
     "/v1/clips/{clip_id}/symbol/motion",
     response_model=SymbolMotion,
-    dependencies=[heavy],
-    responses={200: OCTET_ANSWER, **refusals(404, 409)},
+    dependencies=[of_one_clip, heavy],
+    responses={200: OCTET_ANSWER, 304: UNCHANGED, **refusals(404, 409)},
 )
 def get_symbol_motion(lib: Lib, request: Request, clip_id: ClipId) -> Response:
     """The mean trajectory of the clip's motion symbol.

@@ -21,6 +21,7 @@ from app.search.index.filters import MAX_LABEL_LENGTH, MAX_LABELS
 from app.services import fields
 from app.services.views.frame_rates import MAX_FPS, MIN_FPS
 from app.store.database.cursor_codec import MAX_CURSOR_LENGTH
+from app.store.database.totals import MAX_EXACT
 
 Value = TypeVar("Value")
 
@@ -41,8 +42,26 @@ class Outgoing(BaseModel):
     model_config = ConfigDict(extra="forbid", from_attributes=True, validate_by_name=True)
 
 
+class Paged(Outgoing):
+    """What every page of a list has besides its items."""
+
+    next: str | None = Field(description="Cursor of the next page, null on the last page.")
+    total: int = Field(ge=0, description="Number of items on all pages.")
+    total_is_exact: bool = Field(
+        description=f"False if `total` is an estimate, as in lists of over {MAX_EXACT:,} items. "
+        "Its standard deviation is 1 %."
+    )
+
+
 def _as_list(value: Any) -> Any:
     return [value] if isinstance(value, str) else value
+
+
+def _split_commas(value: Any) -> Any:
+    """Split each of the texts of a list, as a query has it."""
+    if not isinstance(value, list) or not all(isinstance(one, str) for one in value):
+        return value
+    return [name for one in value for part in one.split(",") if (name := part.strip())]
 
 
 def _as_words(value: Any) -> Any:
@@ -88,6 +107,20 @@ FormWords = Annotated[Words, BeforeValidator(_as_words, json_schema_input_type=_
 """Words of a form, separated by spaces; a phrase is joined by underscores."""
 
 Limit = Annotated[int, Field(ge=1, le=1000, description="Maximum number of items in one answer.")]
+
+MAX_FIELDS, MAX_FIELD_NAME = 60, 60
+Fields = Annotated[
+    list[Annotated[str, Field(max_length=MAX_FIELD_NAME)]],
+    BeforeValidator(_split_commas),
+    Field(
+        min_length=1,
+        max_length=MAX_FIELDS,
+        description="Members of each item, with commas between them, as in `id,name`; of the clip "
+        "of a hit as in `score,clip.id`. Default: all. Other members are then left out, even if "
+        "the schema of the answer requires them.",
+    ),
+]
+"""The members that a client chose (`app.api.sparse`)."""
 
 Cursor = Annotated[
     str,

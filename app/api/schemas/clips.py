@@ -10,6 +10,7 @@ from pydantic import BeforeValidator, ConfigDict, Field, Json
 
 from app.api.schemas.base import (
     Cursor,
+    Fields,
     FormWords,
     Incoming,
     Label,
@@ -17,6 +18,7 @@ from app.api.schemas.base import (
     Metadata,
     MetadataChanges,
     Outgoing,
+    Paged,
     PartOfName,
     Path,
     Roles,
@@ -92,6 +94,13 @@ def _split(value: Any) -> Any:
     return value.split() if isinstance(value, str) else value
 
 
+FormBeats = Annotated[
+    list[Seconds],
+    BeforeValidator(_split, json_schema_input_type=str),
+    Field(max_length=MAX_KEYPOSES),
+]
+
+
 class Clip(Outgoing):
     """A motion-capture clip with its labels."""
 
@@ -143,11 +152,10 @@ class ClipCreated(Outgoing):
     )
 
 
-class ClipList(Outgoing):
+class ClipList(Paged):
     """A page of clips."""
 
     items: list[Clip]
-    next: str | None
 
 
 class ClipForm(Incoming):
@@ -184,12 +192,9 @@ class ClipForm(Incoming):
     stack: Stack | None = None
     audio_offset: Offset | None = Field(None, description=f"{_OFFSET} Default: estimated.")
     tempo: Tempo | None = Field(None, description="Beats per minute, if known.")
-    beats: Annotated[list[Seconds], BeforeValidator(_split), Field(max_length=MAX_KEYPOSES)] | (
-        None
-    ) = Field(
+    beats: FormBeats | None = Field(
         None,
-        description="Seconds, separated by spaces. They replace all other beats.",
-        examples=["0.5 1.1"],
+        description="Seconds, separated by spaces, as in `0.5 1.1`. They replace all other beats.",
     )
 
     def labels(self) -> dict[str, Any]:
@@ -253,6 +258,7 @@ class ClipQuery(Filter):
     sort: Sort = Field("-created_at", description="A minus sign at the start reverses the order.")
     limit: Limit = 10
     cursor: Cursor | None = None
+    fields: Fields | None = None
 
     def as_filter(self) -> ClipFilter:
         """The filter of the store."""

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field
 
 from app.api.failures.problems import stored_problem
-from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing
+from app.api.schemas.base import Cursor, Incoming, Limit, Outgoing, Paged
 from app.api.schemas.clip_remarks import ClipWarning, Difference
 from app.api.schemas.problem import StoredProblem
 from app.store.jobs.import_files import FileOutcome
@@ -68,11 +68,10 @@ class JobFile(Outgoing):
     warnings: list[ClipWarning] = Field(description="The warnings of its clip now.")
 
 
-class JobFileList(Outgoing):
+class JobFileList(Paged):
     """A page of an import's files, by path."""
 
     items: list[JobFile]
-    next: str | None
 
 
 class JobFileQuery(Incoming):
@@ -83,11 +82,10 @@ class JobFileQuery(Incoming):
     cursor: Cursor | None = None
 
 
-class JobList(Outgoing):
+class JobList(Paged):
     """A page of jobs, newest first."""
 
     items: list[Job]
-    next: str | None
 
 
 class JobStarted(Outgoing):

@@ -10,6 +10,7 @@ from app.api.schemas.base import (
     Incoming,
     Limit,
     Outgoing,
+    Paged,
     PartOfName,
     Path,
     Probability,
@@ -28,11 +29,10 @@ class NamedCount(Outgoing):
     )
 
 
-class NamedCounts(Outgoing):
-    """A page of the labels of a kind, by name."""
+class NamedCounts(Paged):
+    """A page of the labels of a kind, by name. Of completions there is one page."""
 
     items: list[NamedCount]
-    next: str | None = None
 
 
 class WordListQuery(Incoming):

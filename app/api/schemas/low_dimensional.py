@@ -53,11 +53,12 @@ class ReductionFields(Incoming):
     def reduction_if_any(self) -> Reduction | None:
         """Return the reduction, or None without `dimensions`.
 
-        Raises BadField if another field of it was sent without `dimensions`.
+        Raises BadField if another field of it has a value without `dimensions`. The default value
+        is accepted, because forms send it.
         """
         if self.dimensions is not None:
             return self.as_reduction()
-        if {"basis", "model_clips", "poses"} & self.model_fields_set:
+        if (self.basis, self.model_clips, self.poses) != (Basis.KEYPOSE, None, None):
             message = "is needed with basis, model_clips and poses"
             raise BadField(f"dimensions {message}", places=[Place("dimensions", message)])
         return None

@@ -9,10 +9,9 @@ from pydantic import ConfigDict, Field, WithJsonSchema
 from app.api.schemas.base import Cursor, Limit, Outgoing, Seconds
 from app.api.schemas.filters import Filter
 from app.api.schemas.query_source import ClipId, QueryFields
-from app.api.schemas.search import Hit, MotionHits
+from app.api.schemas.search import Hit
 from app.motion.roles.joint_roles import SUN_ROLES
 from app.search.pose.pose_matches import MatchesPerClip
-from app.services.find import hits as services
 from app.services.find.by_pose import PoseQuery
 
 _POINT = {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}
@@ -89,11 +88,6 @@ class PoseHit(Hit):
 
     time: float = Field(description="Seconds: when the clip is nearest to the pose.")
 
-    @classmethod
-    def of(cls, hit: services.Hit) -> PoseHit:
-        """A hit as the API shows it."""
-        return cls(**dict(Hit.of(hit)), time=hit.start if hit.time is None else hit.time)
-
 
 class PoseHits(Outgoing):
     """A page of a ranking by pose, the nearest first."""
@@ -103,9 +97,3 @@ class PoseHits(Outgoing):
     library_version: int
     items: list[PoseHit]
     next: str | None
-
-    @classmethod
-    def of(cls, hits: services.Hits) -> PoseHits:
-        """A page as the API shows it."""
-        shown = dict(MotionHits.of(hits))
-        return cls(**{**shown, "items": [PoseHit.of(hit) for hit in hits.items]})

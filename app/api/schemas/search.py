@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field, Json
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, Json
 
 from app.api.schemas.base import ROUNDED, Cursor, Incoming, Limit, Outgoing, Probability, Seconds
 from app.api.schemas.clips import Clip
 from app.api.schemas.filters import Filter
 from app.api.schemas.query_source import ClipId, QueryFields, QueryForm
 from app.search.example.methods import Method
-from app.services.find import hits as services
 from app.services.find.queries import MotionQuery, WordQuery
 from app.services.find.query_source import QuerySource
 
@@ -122,30 +121,25 @@ class WordSearch(Incoming):
         )
 
 
+def _rounded(seconds: float) -> float:
+    return round(seconds, 6)
+
+
+HitSeconds = Annotated[float, AfterValidator(_rounded)]
+
+
 class Hit(Outgoing):
     """One hit of a search."""
 
     rank: int = Field(ge=1)
     score: float = Field(ge=0, le=1, description="Higher is closer.")
     distance: float
-    start: float = Field(
+    start: HitSeconds = Field(
         description="Start of the found part, seconds from the start of the clip. 0 with scope "
         "clips."
     )
-    end: float = Field(description="End of the found part, seconds.")
+    end: HitSeconds = Field(description="End of the found part, seconds.")
     clip: Clip
-
-    @classmethod
-    def of(cls, hit: services.Hit) -> Hit:
-        """A hit as the API shows it."""
-        return cls(
-            rank=hit.rank,
-            score=hit.score,
-            distance=hit.distance,
-            start=round(hit.start, 6),
-            end=round(hit.end, 6),
-            clip=Clip.model_validate(hit.clip),
-        )
 
 
 class MotionHits(Outgoing):
@@ -156,17 +150,6 @@ class MotionHits(Outgoing):
     library_version: int
     items: list[Hit]
     next: str | None
-
-    @classmethod
-    def of(cls, hits: services.Hits) -> MotionHits:
-        """A page as the API shows it."""
-        return cls(
-            method=hits.method,
-            took_ms=hits.took_ms,
-            library_version=hits.library_version,
-            items=[Hit.of(hit) for hit in hits.items],
-            next=hits.next,
-        )
 
 
 class WordHit(Hit):
@@ -185,6 +168,10 @@ class WordHit(Hit):
     )
 
 
+def _none_as_empty(value: Any) -> Any:
+    return {} if value is None else value
+
+
 class WordHits(Outgoing):
     """A page of a ranking by words, the most probable first."""
 
@@ -194,19 +181,6 @@ class WordHits(Outgoing):
     items: list[WordHit]
     next: str | None
     unknown_words: list[str] = Field(description="Words that no clip carries.")
-    expanded: dict[str, list[str]] = Field(
+    expanded: Annotated[dict[str, list[str]], BeforeValidator(_none_as_empty)] = Field(
         description="For each unknown word, the words that were used instead."
     )
-
-    @classmethod
-    def of(cls, hits: services.Hits) -> WordHits:
-        """A page as the API shows it, with the unknown words."""
-        return cls(
-            method=hits.method,
-            took_ms=hits.took_ms,
-            library_version=hits.library_version,
-            items=[WordHit(**dict(Hit.of(hit))) for hit in hits.items],
-            next=hits.next,
-            unknown_words=list(hits.unknown_words),
-            expanded={word: list(used) for word, used in (hits.expanded or {}).items()},
-        )

@@ -7,7 +7,7 @@ from datetime import datetime
 from pydantic import ConfigDict, Field
 
 from app.analysis.low_dimensional.eigen_motion import PAPER_DIMENSIONS
-from app.api.schemas.base import Cursor, Fps, Id, Incoming, Limit, Outgoing
+from app.api.schemas.base import Cursor, Fps, Id, Incoming, Limit, Outgoing, Paged
 from app.services.views import studies
 from app.services.views.low_dimensional import MAX_MODEL_CLIPS
 from app.services.views.studies import MAX_SEQUENCES, MAX_VOTER
@@ -70,11 +70,10 @@ class Pair(Outgoing):
         )
 
 
-class PairList(Outgoing):
+class PairList(Paged):
     """A page of pairs, the newest first."""
 
     items: list[Pair]
-    next: str | None
 
 
 class PairsQuery(Incoming):

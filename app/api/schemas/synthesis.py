@@ -39,8 +39,8 @@ class Synthesize(Incoming):
     model_config = ConfigDict(
         json_schema_extra={
             "examples": [
-                {"person": "anna", "task": "run"},
-                {"clip_ids": ["CLIP_ID"], "task": "run", "store": True},
+                {"person": "PERSON", "task": "TASK"},
+                {"clip_ids": ["CLIP_ID"], "task": "TASK", "store": True},
             ]
         }
     )

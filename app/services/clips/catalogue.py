@@ -64,11 +64,12 @@ class Created:
 
 @dataclass(frozen=True, slots=True)
 class StoredFile:
-    """A stored file: its path, the name that it came with, its size in bytes."""
+    """A stored file: its path, the name that it came with, its size in bytes, its SHA-256."""
 
     path: Path
     name: str
     size: int
+    sha256: str
 
 
 def create_clip(
@@ -221,17 +222,27 @@ def list_clips(
     limit: int = 50,
     cursor: str | None = None,
 ) -> Page[ClipRecord]:
-    """One page of the clips that pass a filter. Raises BadField for a bad sort or cursor."""
+    """One page of the clips that pass a filter, with the number of them. Raises BadField for a
+    bad sort or cursor."""
+    passing = filter or ClipFilter()
     with lib.store.read() as tx:
-        return clip_listing.list_clips(
-            tx, filter or ClipFilter(), sort=sort, limit=limit, cursor=cursor
-        )
+        page = clip_listing.list_clips(tx, passing, sort=sort, limit=limit, cursor=cursor)
+        return page.counted(clip_listing.total(tx, passing))
 
 
 def get_clip(lib: Library, clip_id: str) -> ClipRecord:
     """A clip by id; raises ClipNotFound."""
     with lib.store.read() as tx:
         return stored.get(tx, clip_id)
+
+
+def shown_version(lib: Library, clip_id: str) -> int | None:
+    """A number that grows with each change of what views of a ready clip show.
+
+    None if the clip does not exist or is not ready.
+    """
+    with lib.store.read() as tx:
+        return stored.searched_version(tx, clip_id)
 
 
 def update_clip(lib: Library, clip_id: str, changes: Mapping[str, Any]) -> ClipRecord:
@@ -261,14 +272,16 @@ def delete_clip(lib: Library, clip_id: str) -> None:
 def open_file(lib: Library, clip_id: str) -> StoredFile:
     """The original file of a clip in any state. Raises ClipNotFound, FileDamaged."""
     clip = get_clip(lib, clip_id)
-    return StoredFile(lib.store.files.checked_path(clip.sha256), clip.file_name, clip.file_size)
+    path = lib.store.files.checked_path(clip.sha256)
+    return StoredFile(path, clip.file_name, clip.file_size, clip.sha256)
 
 
 def open_recording(lib: Library, clip_id: str) -> StoredFile:
     """The file of a clip's recording. Raises the errors of `open_file`, and NotFound if the clip
     has no recording."""
     audio = _recording_of(get_clip(lib, clip_id))
-    return StoredFile(lib.store.files.checked_path(audio.sha256), audio.name, audio.size)
+    path = lib.store.files.checked_path(audio.sha256)
+    return StoredFile(path, audio.name, audio.size, audio.sha256)
 
 
 def remove_recording(lib: Library, clip_id: str) -> ClipRecord:

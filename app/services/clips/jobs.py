@@ -39,7 +39,8 @@ def list_jobs(
 ) -> Page[JobRecord]:
     """One page of jobs, newest first, without imports' files. Raises BadField for a bad cursor."""
     with lib.store.read() as tx:
-        return stored.list_jobs(tx, kind=kind, state=state, limit=limit, cursor=cursor)
+        page = stored.list_jobs(tx, kind=kind, state=state, limit=limit, cursor=cursor)
+        return page.counted(stored.total(tx, kind=kind, state=state))
 
 
 def list_files(
@@ -55,7 +56,8 @@ def list_files(
     """
     with lib.store.read() as tx:
         stored.get(tx, job_id)
-        return import_files.page(tx, job_id, outcome=outcome, limit=limit, cursor=cursor)
+        page = import_files.page(tx, job_id, outcome=outcome, limit=limit, cursor=cursor)
+        return page.counted(import_files.total(tx, job_id, outcome))
 
 
 def all_files(

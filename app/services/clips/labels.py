@@ -44,7 +44,8 @@ def page(lib: Library, kind: LabelKind, limit: int, cursor: str | None = None) -
     """One page of the labels of a kind, by name. Raises BadField for a bad cursor."""
     with lib.store.read() as tx:
         found = stored.page(tx, kind, SYNTHESIZED, limit, cursor)
-    return Page(tuple(map(_label_count, found.items)), found.next)
+        total = stored.total(tx, kind)
+    return Page(tuple(map(_label_count, found.items)), found.next).counted(total)
 
 
 def _counted(

@@ -17,7 +17,7 @@ from app.services.clips import traces
 from app.services.library.fitted_models import ModelKind, holds_persons
 from app.services.library.library import Library
 from app.services.training.models import enqueue_fit
-from app.store import models
+from app.store import keyed_calls, models
 from app.store.clips import labels
 from app.store.clips import repository as clips
 from app.store.database.engine import Tx
@@ -45,6 +45,7 @@ def _forget(tx: Tx, person: str) -> JobRecord:
         )
     traces.remove_name(tx, person, clips.forget_person(tx, person))
     models.remove(tx, _HOLDING_PERSONS)
+    keyed_calls.forget_answers(tx)
     return enqueue_fit(tx)
 
 

@@ -11,6 +11,7 @@ from sqlalchemy import ColumnElement, FromClause, case, func, select
 from app.store.database.engine import Tx
 from app.store.database.paging import Page, Position, read_cursor, write_cursor
 from app.store.database.tables import clip_words, clips
+from app.store.database.totals import Total, exact_total
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +76,13 @@ def page(
         return Page(counts, None)
     shown = counts[:limit]
     return Page(shown, write_cursor(kind.value, Position(shown[-1].name, "")))
+
+
+def total(tx: Tx, kind: LabelKind) -> Total:
+    """How many labels of a kind there are."""
+    name, carriers = _KINDS[kind]
+    query = select(name).select_from(carriers).where(name.is_not(None)).distinct()
+    return exact_total(tx, query)
 
 
 def _counts(

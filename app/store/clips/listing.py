@@ -14,6 +14,7 @@ from app.store.clips.record import REANALYSIS_OPEN, ClipRecord, ClipState, Reana
 from app.store.database.engine import Tx
 from app.store.database.paging import Page, Position, Value, after, read_cursor, write_cursor
 from app.store.database.tables import clip_metadata, clips
+from app.store.database.totals import Total, total_of
 
 DEFAULT_SORT = "-created_at"
 
@@ -53,10 +54,29 @@ def list_clips(
     return _page(tx, _ordered(query, chosen, descending).limit(limit + 1), sort, limit)
 
 
+def newest_ready(
+    tx: Tx, *, is_labeled: bool = False, is_audible: bool = False
+) -> ClipRecord | None:
+    """The newest ready clip; with person and task, or with a recording, if asked for."""
+    query = select(clips.c.id).where(clips.c.state == ClipState.READY.value)
+    if is_labeled:
+        query = query.where(clips.c.person.is_not(None), clips.c.task.is_not(None))
+    if is_audible:
+        query = query.where(clips.c.audio_sha256.is_not(None))
+    newest = query.order_by(clips.c.created_at.desc(), clips.c.id.desc()).limit(1)
+    clip_id = tx.execute(newest).scalar_one_or_none()
+    return None if clip_id is None else clip_repository.get(tx, clip_id)
+
+
 def count_clips(tx: Tx, filter: ClipFilter) -> int:
     """The number of clips that pass the filter."""
     count = tx.execute(select(func.count()).select_from(clips).where(condition(filter)))
     return int(count.scalar_one())
+
+
+def total(tx: Tx, filter: ClipFilter) -> Total:
+    """How many clips pass the filter; an estimate if there are many."""
+    return total_of(tx, select(clips.c.id).where(condition(filter)))
 
 
 def list_ids(tx: Tx, filter: ClipFilter) -> tuple[str, ...]:

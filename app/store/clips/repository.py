@@ -44,6 +44,9 @@ IDS_PER_QUERY = 500
 # Built once, because to build a statement takes longer than to execute it.
 _SOME = select(clips).where(clips.c.id.in_(bindparam("ids", expanding=True)))
 _STATE = select(clips.c.state).where(clips.c.id == bindparam("the_id"))
+_VERSION = select(clips.c.changed_version).where(
+    clips.c.id == bindparam("the_id"), clips.c.state == ClipState.READY.value
+)
 _WITH_CONTENT = select(clips.c.id).where(clips.c.content_key == bindparam("content"))
 _CHANGE = update(clips).where(clips.c.id == bindparam("the_id"))
 _ADD, _ADD_WORDS = insert(clips), insert(clip_words)
@@ -85,6 +88,12 @@ def get_many(tx: Tx, clip_ids: Collection[str]) -> dict[str, ClipRecord]:
     """The existing clips among `clip_ids`, by id, in the order of `clip_ids`."""
     clip_of = {clip.id: clip for batch in in_batches(clip_ids) for clip in _load(tx, batch)}
     return {clip_id: clip_of[clip_id] for clip_id in clip_ids if clip_id in clip_of}
+
+
+def searched_version(tx: Tx, clip_id: str) -> int | None:
+    """The library version of the last change of a ready clip; None for any other clip."""
+    version: int | None = tx.execute(_VERSION, {"the_id": clip_id}).scalar_one_or_none()
+    return version
 
 
 def find_by_content(tx: Tx, content_key: str) -> ClipRecord | None:

@@ -13,6 +13,14 @@ def new_id(noun: str) -> str:
     return f"{noun}_{secrets.token_hex(ID_BYTES)}"
 
 
+def share_before(row_id: str) -> float:
+    """Return the share of all possible ids that are smaller than a random id: above 0, at most 1.
+
+    The id must be from `new_id`. Raises ValueError otherwise.
+    """
+    return (int(row_id.rpartition("_")[2], 16) + 1) / 16.0 ** (2 * ID_BYTES)
+
+
 def utc_now() -> datetime:
     """The current time in UTC, with a time zone."""
     return datetime.now(UTC)

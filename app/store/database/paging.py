@@ -6,7 +6,7 @@ removed between two pages, no other row appears twice or is missed.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from typing import Generic, TypeVar
 
@@ -15,6 +15,7 @@ from sqlalchemy import ColumnElement, and_, or_
 from app.errors import BadField, Place
 from app.store.database import cursor_codec
 from app.store.database.cursor_codec import as_number, as_text
+from app.store.database.totals import Total
 
 Item = TypeVar("Item")
 Value = str | float | datetime
@@ -22,10 +23,20 @@ Value = str | float | datetime
 
 @dataclass(frozen=True, slots=True)
 class Page(Generic[Item]):
-    """One page. next: the cursor of the following page, None on the last page."""
+    """One page. next: the cursor of the following page, None on the last page.
+
+    total: the number of rows of all pages, None if nobody counted them; total_is_exact: false if
+    it is an estimate.
+    """
 
     items: tuple[Item, ...]
     next: str | None
+    total: int | None = None
+    total_is_exact: bool = True
+
+    def counted(self, total: Total) -> Page[Item]:
+        """The same page with the number of rows of all pages."""
+        return replace(self, total=total.count, total_is_exact=total.is_exact)
 
 
 @dataclass(frozen=True, slots=True)

@@ -302,3 +302,52 @@ stage_times = Table(
     Column("seconds", Float, nullable=False),
     Column("count", BigInteger, nullable=False),
 )
+
+webhooks = Table(
+    "webhooks",
+    metadata,
+    Column("id", String, primary_key=True),
+    Column("url", String, nullable=False),
+    Column("secret", String, nullable=False),
+    _json("events", nullable=False),
+    Column("is_enabled", Boolean, nullable=False, index=True),
+    # Failures without a success in between, and when the next delivery is due.
+    Column("failures", Integer, nullable=False),
+    Column("not_before", UtcDateTime),
+    _json("last_delivery"),
+    Column("created_at", UtcDateTime, nullable=False),
+)
+
+# Events that a webhook still has to receive.
+webhook_deliveries = Table(
+    "webhook_deliveries",
+    metadata,
+    Column("id", String, primary_key=True),
+    Column(
+        "webhook_id",
+        String,
+        ForeignKey("webhooks.id", ondelete="CASCADE"),
+        nullable=False,
+    ),
+    Column("event", String, nullable=False),
+    Column("body", String, nullable=False),
+    Column("attempts", Integer, nullable=False),
+    Column("created_at", UtcDateTime, nullable=False),
+    Index(None, "webhook_id", "created_at"),
+)
+
+# Calls with an Idempotency-Key, and their answers.
+keyed_calls = Table(
+    "keyed_calls",
+    metadata,
+    Column("key_sha256", String, primary_key=True),
+    Column("state", String, nullable=False),
+    # The process and the try that answer the call.
+    Column("owner", String, nullable=False),
+    Column("try_id", String, nullable=False),
+    Column("content_sha256", String),
+    Column("status", Integer),
+    Column("media_type", String),
+    Column("body", LargeBinary),
+    Column("created_at", UtcDateTime, nullable=False, index=True),
+)

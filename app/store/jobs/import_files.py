@@ -17,6 +17,7 @@ from app.store.clips.record import ClipState
 from app.store.database.engine import Tx
 from app.store.database.paging import Page, Position, read_cursor, write_cursor
 from app.store.database.tables import clips, import_entries
+from app.store.database.totals import Total, exact_total
 
 BY_PATH = "path"
 
@@ -156,6 +157,15 @@ def page(
     if len(files) <= limit or not shown:
         return Page(shown, None)
     return Page(shown, write_cursor(BY_PATH, Position(shown[-1].path, "")))
+
+
+def total(tx: Tx, job_id: str, outcome: FileOutcome | None = None) -> Total:
+    """How many files of an import `page` lists."""
+    files = select(import_entries.c.path).where(import_entries.c.job_id == job_id)
+    if outcome is not None:
+        files = files.outerjoin(clips, clips.c.id == import_entries.c.clip_id)
+        files = files.where(_outcome == outcome.value)
+    return exact_total(tx, files)
 
 
 def first(

@@ -17,7 +17,7 @@ from app.store.clips.record import REANALYSIS_OPEN, ClipState, Difference
 from app.store.database.engine import Tx
 from app.store.database.ids import utc_now
 from app.store.database.tables import clips, import_entries, jobs
-from app.store.jobs import import_files, leases
+from app.store.jobs import endings, import_files, leases
 from app.store.jobs import repository as job_repository
 from app.store.jobs.import_files import FileOutcome, ImportOutcome
 from app.store.jobs.record import JobRecord, JobState, Lease
@@ -185,7 +185,7 @@ def settle_if_done(tx: Tx, job_id: str, ended: int) -> JobRecord:
         # Not a new count: for a hundred thousand files it takes longer than an analysis.
         total = row["payload"].get(_FILES) or _counts(tx, job_id)[0]
         return _update(tx, job_id, progress=min(row["progress"] + ended / total, 1.0))
-    return _update(
+    done = _update(
         tx,
         job_id,
         state=JobState.SUCCEEDED.value,
@@ -194,6 +194,8 @@ def settle_if_done(tx: Tx, job_id: str, ended: int) -> JobRecord:
         finished_at=utc_now(),
         result=_result(tx, job_id, row["payload"]),
     )
+    endings.announce(tx, [job_repository.get_row(tx, job_id)])
+    return done
 
 
 def _result(tx: Tx, job_id: str, payload: Mapping[str, Any]) -> dict[str, Any]:

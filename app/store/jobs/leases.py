@@ -28,6 +28,7 @@ from app.errors import LeaseLost
 from app.store.database.engine import Tx
 from app.store.database.ids import utc_now
 from app.store.database.tables import jobs
+from app.store.jobs import endings
 from app.store.jobs import repository as job_repository
 from app.store.jobs.record import ClaimedJob, JobKind, JobRecord, JobState, Lease
 
@@ -151,7 +152,9 @@ def _due_parameters(kinds: Collection[JobKind], now: datetime) -> dict[str, Any]
 
 def _end(tx: Tx, lease: Lease, state: JobState, **values: Any) -> JobRecord:
     values |= {"state": state.value, "finished_at": utc_now()} | _FREE
-    return job_repository.to_record(_change(tx, lease, values))
+    ended = _change(tx, lease, values)
+    endings.announce(tx, [ended])
+    return job_repository.to_record(ended)
 
 
 def _change(tx: Tx, lease: Lease, values: dict[str, Any]) -> RowMapping:

@@ -23,7 +23,7 @@ from app.store.clips.record import ClipFacts, ClipRecord, ClipState, ClipWarning
 from app.store.database import tables as t
 from app.store.database.engine import Tx
 from app.store.database.ids import utc_now
-from app.store.jobs import imports, leases, owners, removals
+from app.store.jobs import endings, imports, leases, owners, removals
 from app.store.jobs import repository as jobs
 from app.store.jobs.record import ClaimedJob, JobKind, JobRecord, JobState, Lease
 
@@ -189,9 +189,10 @@ def _cancel_analyses(tx: Tx, clip_ids: list[str]) -> None:
         t.jobs.c.clip_id.in_(clip_ids), t.jobs.c.state.in_(jobs.open_states())
     )
     tx.execute(open_jobs.where(t.jobs.c.owner.is_not(None)).values(cancel_requested=True))
-    without_owner = open_jobs.where(t.jobs.c.owner.is_(None))
-    ended = without_owner.values(_canceled()).returning(t.jobs.c.clip_id)
-    failed = list(tx.execute(ended).scalars())
+    ended = open_jobs.where(t.jobs.c.owner.is_(None)).values(_canceled()).returning(t.jobs)
+    rows = tx.execute(ended).mappings().all()
+    endings.announce(tx, rows)
+    failed = [row["clip_id"] for row in rows]
     clips.fail_waiting(tx, failed, Canceled("The analysis was canceled").as_problem())
     settle_imports(tx, failed)
 
@@ -235,7 +236,9 @@ def _open_jobs_of(tx: Tx, clip_id: str) -> list[str]:
 
 
 def _cancel_now(tx: Tx, job_id: str) -> JobRecord:
-    return _update_job(tx, job_id, **_canceled())
+    canceled = _update_job(tx, job_id, **_canceled())
+    endings.announce(tx, [jobs.get_row(tx, job_id)])
+    return canceled
 
 
 def _canceled() -> dict[str, Any]:

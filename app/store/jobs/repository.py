@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from datetime import datetime
+from typing import Any
 
-from sqlalchemy import RowMapping, bindparam, insert, select
+from sqlalchemy import RowMapping, Select, bindparam, insert, select
 
 from app.errors import JobNotFound
 from app.store.clips import versions as library
@@ -13,6 +14,7 @@ from app.store.database.engine import Tx
 from app.store.database.ids import new_id, utc_now
 from app.store.database.paging import Page, Position, after, read_cursor, write_cursor
 from app.store.database.tables import jobs
+from app.store.database.totals import Total, total_of
 from app.store.jobs.record import OPEN_STATES, JobKind, JobRecord, JobState, NewJob
 
 NEWEST_FIRST = "-created_at"
@@ -68,11 +70,7 @@ def list_jobs(
     cursor: str | None = None,
 ) -> Page[JobRecord]:
     """One page of at most `limit` jobs, newest first; raises BadField at "cursor"."""
-    query = select(jobs)
-    if kind is not None:
-        query = query.where(jobs.c.kind == kind.value)
-    if state is not None:
-        query = query.where(jobs.c.state == state.value)
+    query = _filtered(select(jobs), kind, state)
     if cursor is not None:
         position = read_cursor(cursor, NEWEST_FIRST, datetime)
         query = query.where(after(jobs.c.created_at, jobs.c.id, position, descending=True))
@@ -84,6 +82,19 @@ def list_jobs(
         return Page(shown, None)
     last = Position(shown[-1].created_at, shown[-1].id)
     return Page(shown, write_cursor(NEWEST_FIRST, last))
+
+
+def total(tx: Tx, *, kind: JobKind | None = None, state: JobState | None = None) -> Total:
+    """How many jobs `list_jobs` lists; an estimate if there are many."""
+    return total_of(tx, _filtered(select(jobs.c.id), kind, state))
+
+
+def _filtered(query: Select[Any], kind: JobKind | None, state: JobState | None) -> Select[Any]:
+    if kind is not None:
+        query = query.where(jobs.c.kind == kind.value)
+    if state is not None:
+        query = query.where(jobs.c.state == state.value)
+    return query
 
 
 def open_states() -> list[str]:

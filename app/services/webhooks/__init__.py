@@ -1,0 +1,1 @@
+"""Webhooks: HTTP calls to other services when a job has ended."""
