@@ -31,8 +31,16 @@ def test_a_stack_can_be_chosen_at_upload_later_and_for_a_query(demo_service: Liv
         demo_service.wait_for_job(again["job"]["id"])
         clip = client.get(path).json()
         assert (clip["state"], clip["frames"], set(clip)) == ("ready", 31, CLIP_FIELDS)
-        hits = client.post("/v1/search/motion", **_sent("bow")).json()["items"]
-        assert hits[0]["clip"]["id"] == clip["id"]
+
+        def found(stack: str, **more: str) -> list[str]:
+            sent = _sent(stack)
+            sent["data"] |= {"limit": "100"} | more
+            hits = client.post("/v1/search/motion", **sent).json()["items"]
+            return [hit["clip"]["id"] for hit in hits]
+
+        assert found("bow", include_self="true")[0] == clip["id"]
+        assert clip["id"] not in found("bow")
+        assert clip["id"] in found("sway")  # another motion of the same file
         assert client.post("/v1/recognize", **_sent("sway")).status_code == 200
         for url in ("/v1/search/motion", "/v1/recognize"):
             assert_problem(client.post(url, **_sent("run")), 422, "bad_field", "body.stack")

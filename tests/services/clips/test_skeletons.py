@@ -93,7 +93,8 @@ def test_the_same_pair_again_is_the_same_clip(paired: Library) -> None:
 
 
 def test_a_search_by_an_uploaded_pair_finds_the_stored_one(paired: Library) -> None:
-    query = MotionQuery(QuerySource(content=io.BytesIO(AMC), skeleton=io.BytesIO(ASF)))
+    source = QuerySource(content=io.BytesIO(AMC), skeleton=io.BytesIO(ASF))
+    query = MotionQuery(source, include_self=True)
     best = find.find_motion(paired, query).items[0]
     assert best.clip.name == "07_01"
     assert best.distance == pytest.approx(0, abs=1e-3)

@@ -101,7 +101,8 @@ def test_a_part_of_a_clip_finds_as_its_segment_does(danced: Library, clip: ClipR
 def test_an_upload_is_taken_as_one_segment(danced: Library, clip: ClipRecord) -> None:
     own = list_segments(danced, clip.id).segments[_middle(danced, clip)]
     file = io.BytesIO(dance_file(_dance(500, 0)))
-    hits = _search(danced, content=file, start=own.start, end=own.end, limit=1)
+    part = {"content": file, "start": own.start, "end": own.end}
+    hits = _search(danced, **part, limit=1, include_self=True)
     assert hits.items[0].clip.id == clip.id
     assert hits.items[0].start == pytest.approx(own.start, abs=0.05)
 
