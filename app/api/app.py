@@ -39,6 +39,7 @@ from app.api.routes import (
     search,
     segments,
     space,
+    status,
     studies,
     suggestions,
     symbols,
@@ -79,6 +80,7 @@ ROUTES = (
     space,
     studies,
     segments,
+    status,
     health,
 )
 

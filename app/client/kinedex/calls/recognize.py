@@ -1,0 +1,69 @@
+"""Calls: recognize. Generated from the OpenAPI description by `make client`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Literal
+
+from kinedex.call import Call, record
+from kinedex.sent import FileInput, Progress, given
+from kinedex.types.recognition import Recognition
+
+
+def recognize(
+    clip_id: str | None = None,
+    *,
+    file: FileInput | None = None,
+    skeleton: FileInput | None = None,
+    unit: str | None = None,
+    frame_rate: float | None = None,
+    roles: Mapping[str, str] | None = None,
+    stack: str | None = None,
+    method: Literal["default", "multilinear", "signatures", "perera"] | None = None,
+    known_person: str | None = None,
+    known_task: str | None = None,
+    progress: Progress | None = None,
+) -> Call[Recognition]:
+    """Recognize person, task and words of a motion. `label` is null if it is unknown.
+
+    file: The query motion: BVH, AMC, C3D, FBX, NPZ or NPY. It is never stored.
+    skeleton: The ASF file that an AMC file needs.
+    unit: m, dm, cm, mm, in, ft, cmu (unit of the CMU files), or meters per unit.
+    frame_rate: It replaces the frame rate that the file declares.
+    roles: JSON: joint name by role, as in {"hips": "Pelvis"}.
+    method: The recognizer. signatures: Vasilescu 2002, on joint angles. multilinear: the same on
+        positions. perera: weighted distances of joints, Perera 2009. Default: default.
+    known_person: Recognize the task given the person. If the library does not know it, it counts
+        as new, and its label in the answer is null.
+    known_task: Recognize the person given the task. If the library does not know it, it counts
+        as new, and its label in the answer is null.
+    progress: Called with the bytes that were sent and the bytes in total.
+    """
+    return Call(
+        "recognize",
+        "POST",
+        "/v1/recognize",
+        record(Recognition),
+        json=given(
+            clip_id=clip_id,
+            unit=unit,
+            frame_rate=frame_rate,
+            roles=roles,
+            stack=stack,
+            method=method,
+            known_person=known_person,
+            known_task=known_task,
+        ),
+        fields=given(
+            clip_id=clip_id,
+            unit=unit,
+            frame_rate=frame_rate,
+            roles=roles,
+            stack=stack,
+            method=method,
+            known_person=known_person,
+            known_task=known_task,
+        ),
+        files=given(file=file, skeleton=skeleton),
+        progress=progress,
+    )
