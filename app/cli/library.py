@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import threading
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from app.cli.output import AsJson, print_json, print_table, progress_bar
-from app.cli.settings import open_library
+from app.cli.settings import open_library, remote_of
+from app.cli.working import working_on
 
 if TYPE_CHECKING:
     from app.services.library.library import Library
@@ -41,6 +40,11 @@ def import_clips(
     """
     from app.store.jobs.record import JobState
 
+    if remote_of(context) is not None:
+        from app.cli.upload import import_to_service
+
+        import_to_service(context, path, wait=wait, as_json=as_json)
+        return
     with open_library(context) as lib:
         job = register(lib, path)
         if wait:
@@ -70,19 +74,9 @@ def register(lib: Library, path: Path) -> JobRecord:
         return job
 
 
-@contextmanager
-def working(lib: Library) -> Iterator[None]:
+def working(lib: Library) -> AbstractContextManager[None]:
     """Run a worker in a thread; it shares the queue with workers of other processes."""
-    from app.worker.loop import run_worker
-
-    stop = threading.Event()
-    worker = threading.Thread(target=run_worker, args=(lib.settings, stop), name="worker")
-    worker.start()
-    try:
-        yield
-    finally:
-        stop.set()
-        worker.join()
+    return working_on(lib.settings)
 
 
 def follow(lib: Library, job_id: str, label: str) -> JobRecord:

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from app.cli.settings import settings_of
+from app.cli.settings import refuse_missing_library, settings_of
 
 Host = Annotated[str | None, typer.Option(help="Address to listen on [KINEDEX_HOST].")]
 Port = Annotated[int | None, typer.Option(help="Port to listen on [KINEDEX_PORT].")]
@@ -43,6 +43,7 @@ def worker(context: typer.Context) -> None:
     from app.worker.loop import run_worker
 
     settings = settings_of(context)
+    refuse_missing_library(settings, "worker")
     stop = threading.Event()
     # a worker that is stopped finishes or returns its job before it exits
     for number in (signal.SIGTERM, signal.SIGINT):
