@@ -5,10 +5,10 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 BENCH_STAMP := $(VENV)/.bench-installed
 
-.PHONY: help install demo serve test test-all bench lint picture
+.PHONY: help install demo serve test test-all bench lint picture client
 
 help:
-	@echo "make demo | serve | test | test-all | bench | lint | install | picture"
+	@echo "make demo | serve | test | test-all | bench | lint | install | picture | client"
 
 install: $(STAMP)
 
@@ -50,3 +50,7 @@ bench: $(BENCH_STAMP)
 # The README's picture, made from the demo library: look at it before you commit it.
 picture: install
 	$(BIN)/python -m tests.picture
+
+# The calls and types of the Python client come from the OpenAPI description.
+client: install
+	$(BIN)/python -m tests.client.generator

@@ -29,9 +29,9 @@ from app.errors import ConfigurationError, Place
 ENV_PREFIX = "KINEDEX_"
 CONFIG_FILE_ENV = "KINEDEX_CONFIG_FILE"
 CONFIG_FILE_DEFAULT = "kinedex.toml"
-OTHER_VARIABLES = frozenset({CONFIG_FILE_ENV, "KINEDEX_DATA_SET"})
+OTHER_VARIABLES = frozenset({CONFIG_FILE_ENV, "KINEDEX_DATA_SET", "KINEDEX_URL", "KINEDEX_API_KEY"})
 """Variables with our prefix that are no settings. The second names the folder of the real clips
-that tests read."""
+that tests read. The last two are read by the client: the service to call, and the key to send."""
 MIN_HEARTBEATS_PER_LEASE = 2.0
 """With fewer, one late heartbeat would give a job to another worker."""
 LOOPBACK_HOSTS = frozenset({"127.0.0.1", "::1", "localhost"})

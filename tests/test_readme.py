@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import re
+import subprocess
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -60,6 +63,22 @@ def test_every_call_of_the_tour_is_described(idle_service: Live) -> None:
     assert len(calls) > 15
     unknown = [call for call in calls if not _is_described(described, *call)]
     assert not unknown
+
+
+def test_the_example_in_python_runs(demo_service: Live) -> None:
+    (example,) = re.findall(r"^```python\n(.*?)^```", README, re.MULTILINE | re.DOTALL)
+    ended = subprocess.run(
+        [sys.executable, "-W", "error", "-c", example],
+        env=os.environ | {"KINEDEX_URL": demo_service.url},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert (ended.returncode, ended.stderr) == (0, "")
+    assert "by bruno" in ended.stdout
+    assert "highest hand: " in ended.stdout
+    assert "100%" in ended.stdout
 
 
 def test_every_linked_file_exists() -> None:

@@ -42,6 +42,7 @@ from app.api.routes import (
     search,
     segments,
     space,
+    status,
     studies,
     suggestions,
     symbols,
@@ -86,6 +87,7 @@ ROUTES = (
     studies,
     segments,
     webhooks,
+    status,
     health,
 )
 

@@ -52,6 +52,20 @@ COMMANDS = {
         "synthesize",
         "Synthesize a motion that a person never recorded, as a BVH file, and report its quality.",
     ),
+    "clips": CommandEntry("app.cli.clips", "program", "List, show, label and delete stored clips."),
+    "jobs": CommandEntry(
+        "app.cli.jobs", "program", "List, show and cancel work in the background."
+    ),
+    "status": CommandEntry(
+        "app.cli.status",
+        "status",
+        "Show what the library holds, what waits, the models, and the disk.",
+    ),
+    "doctor": CommandEntry(
+        "app.cli.doctor",
+        "doctor",
+        "Look for problems of the installation, and say what to do; the exit code is then 1.",
+    ),
     "fit": CommandEntry(
         "app.cli.fit",
         "fit",
@@ -80,6 +94,11 @@ COMMANDS = {
         "app.cli.db", "program", "Upgrade the database, or connect it to its files."
     ),
 }
+
+NEEDS_THIS_MACHINE = frozenset(
+    {"serve", "worker", "demo", "reanalyze", "backup", "verify", "evaluate", "keys", "db"}
+)
+"""Commands that work on a library of this machine, and not with a service elsewhere."""
 
 EVALUATIONS = {
     "retrieval": CommandEntry(

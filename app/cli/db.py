@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from app.cli.settings import settings_of
+from app.cli.settings import refuse_missing_library, settings_of
 
 program = typer.Typer(
     help="Upgrade the database, or connect it to its files.", no_args_is_help=True
@@ -19,6 +19,7 @@ def upgrade(context: typer.Context) -> None:
     from app.store.folders import make_private
 
     settings = settings_of(context)
+    refuse_missing_library(settings, "upgrade")
     make_private(settings.data_dir)
     identity.refuse_files_without_database(settings.database, settings.files_dir)
     state = schema.upgrade(settings.database)

@@ -10,9 +10,10 @@ import typer
 
 from app.analysis.low_dimensional.eigen_motion import Basis
 from app.cli.files import write_whole
-from app.cli.options import FilterJson
+from app.cli.options import FilterJson, filter_of
 from app.cli.output import AsJson, print_json, progress_bar
-from app.cli.settings import open_library
+from app.cli.session import open_client
+from app.cli.settings import open_library, remote_of
 from app.errors import BadField, Place
 from app.services.views.export_format import (
     ExportContent,
@@ -24,6 +25,7 @@ from app.services.views.export_format import (
 
 if TYPE_CHECKING:
     from app.services.library.library import Library
+    from kinedex import Kinedex
 
 
 def _print_definitions(requested: bool) -> None:
@@ -116,12 +118,23 @@ def export(
         "fps": fps,
         "reduction": None if dimensions is None else Reduction(dimensions, basis),
     }
+    if remote_of(context) is not None:
+        written = _export_from_service(context, clip_ids, filter_json, output, options)
+        _print_written(written, output, is_many=is_many, as_json=as_json)
+        return
     with open_library(context) as lib:
         if is_many or not clip_ids:
             ids = _chosen(lib, clip_ids, filter_json)
             written = _write_many(lib, ids, output or Path(), options)
         else:
             written = _write_one(lib, clip_ids[0], output, options)
+    _print_written(written, output, is_many=is_many, as_json=as_json)
+
+
+def _print_written(
+    written: dict[str, Any], output: Path | None, *, is_many: bool, as_json: bool
+) -> None:
+    """Print the paths and sizes. Ends the program with 1 if no clip of many could be exported."""
     if as_json:
         print_json(written)
     elif not is_many:
@@ -130,6 +143,88 @@ def export(
         typer.echo(f"{len(written['files'])} files are in {output or Path()}.")
     if is_many and not written["files"]:
         raise typer.Exit(1)
+
+
+def _export_from_service(
+    context: typer.Context,
+    clip_ids: Sequence[str] | None,
+    filter_json: str | None,
+    output: Path | None,
+    options: dict[str, Any],
+) -> dict[str, Any]:
+    """Export clips of the service at --url, as `_write_one` and `_write_many` do.
+
+    Raises kinedex.KinedexError for a single clip, and BadField.
+    """
+    from kinedex import KinedexError
+
+    target, query = options["format"], _export_query(options)
+    with open_client(context) as client:
+        if filter_json is None and len(clip_ids or ()) == 1:
+            (clip_id,) = clip_ids or ()
+            path = _remote_path(client.clips.get(clip_id).name, output, query, target)
+            size = write_whole(path, [client.clips.export(clip_id, target.value, **query)])
+            return {"path": str(path), "format": target.value, "bytes": size}
+        clips = _remote_clips(client, clip_ids, filter_json)
+        folder = _made_folder(output or Path())
+        files, left_out = [], []
+        for clip in clips:
+            try:
+                content = client.clips.export(clip.id, target.value, **query)
+            except KinedexError as problem:
+                left_out.append({"clip_id": clip.id, "reason": str(problem)})
+                typer.echo(f"{clip.id}: {problem}", err=True)
+                continue
+            # Ids keep files of equal names apart.
+            path = _remote_path(f"{clip.name}-{clip.id}", folder, query, target)
+            files.append(
+                {"clip_id": clip.id, "path": str(path), "bytes": write_whole(path, [content])}
+            )
+    return {"format": target.value, "files": files, "left_out": left_out}
+
+
+def _export_query(options: dict[str, Any]) -> dict[str, Any]:
+    """The parameters of the call, by name, without those that were not given."""
+    reduction = options["reduction"]
+    given = {name: options[name] for name in ("content", "unit", "joints", "skeleton", "fps")}
+    query = {
+        name: getattr(value, "value", value) for name, value in given.items() if value is not None
+    }
+    if reduction is not None:
+        query |= {"dimensions": reduction.dimensions, "basis": reduction.basis.value}
+    return query
+
+
+def _remote_clips(
+    client: Kinedex, clip_ids: Sequence[str] | None, filter_json: str | None
+) -> list[Any]:
+    if clip_ids and filter_json is not None:
+        raise _bad("filter", "goes without ids of clips")
+    if clip_ids:
+        return [client.clips.get(clip_id) for clip_id in clip_ids]
+    if filter_json is None:
+        raise _bad("clip_ids", "expected the id of a clip, or --filter")
+    return list(client.clips.list(state="ready", **filter_of(filter_json)))
+
+
+def _remote_path(
+    name: str, output: Path | None, query: dict[str, Any], target: ExportFormat
+) -> Path:
+    """The path of a file; `name`: of the clip, for a folder or without a path."""
+    if output is not None and not output.is_dir():
+        return output
+    safe = "".join(c if c.isalnum() or c in " ._-()+" else "_" for c in name).strip(" .")[:100]
+    part = f"-{query['content']}" if query.get("content") else ""
+    return (output or Path()) / f"{safe}{part}.{target.value}"
+
+
+def _made_folder(folder: Path) -> Path:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as problem:
+        message = f"{folder} is no folder and cannot be made: {problem.strerror}"
+        raise _bad("output", message) from None
+    return folder
 
 
 def _usual_format(output: Path | None, content: ExportContent | None) -> ExportFormat:
@@ -177,11 +272,7 @@ def _write_many(
     """Write a file for each clip into the folder, and name those without one."""
     from app.services.views.export_many import export_each
 
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as problem:
-        message = f"{folder} is no folder and cannot be made: {problem.strerror}"
-        raise _bad("output", message) from None
+    _made_folder(folder)
     files, left_out = [], []
     with progress_bar() as bar:
         each = export_each(lib, clip_ids, **options)

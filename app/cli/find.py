@@ -2,21 +2,29 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from app.cli.options import FilterJson, IncludeSelf
-from app.cli.output import AsJson, print_json, print_table
-from app.cli.query_source import FrameRate, Query, Skeleton, Stack, Unit, UpAxis, source_of
-from app.cli.settings import open_library
-from app.errors import BadField, Place
+from app.cli.hits import print_hits
+from app.cli.options import FilterJson, IncludeSelf, filter_of
+from app.cli.output import AsCsv, AsJson, print_csv, print_json, print_table
+from app.cli.query_source import (
+    FrameRate,
+    Query,
+    Skeleton,
+    Stack,
+    Unit,
+    UpAxis,
+    naming_missing,
+    query_of,
+)
+from app.cli.session import open_client
 from app.search.example.methods import Method
 
 if TYPE_CHECKING:
-    from app.api.schemas.recognition import Answer
-    from app.services.find.hits import Hits
+    from kinedex.types.recognition import Answer, Recognition
+    from kinedex.types.search import WordHits
 
 ADVICE = " Use --words to search by words."
 
@@ -60,36 +68,39 @@ def search(
     up_axis: UpAxis = None,
     stack: Stack = None,
     as_json: AsJson = False,
+    as_csv: AsCsv = False,
 ) -> None:
     """Find motions that are similar to a file or a stored clip, or motions for words."""
-    from app.services.find import find
-    from app.services.find.queries import MotionQuery, WordQuery
-
     if (query is None) == (not words):
         raise typer.BadParameter("give either a file or clip id, or --words")
     if words and scope != "clips":
         raise typer.BadParameter("--scope goes with a file or clip id, not with --words")
-    fields = filter_of(filter_json)
-    with open_library(context) as lib:
-        if words:
-            hits = find.find_words(lib, WordQuery(words, mode, limit, fields))
-        elif query is not None:
-            with source_of(
-                query,
-                start=start,
-                end=end,
-                skeleton=skeleton,
-                frame_rate=frame_rate,
-                unit=unit,
-                up_axis=up_axis,
-                stack=stack,
-                advice=ADVICE,
-            ) as source:
-                motion_query = MotionQuery(
-                    source, method, limit, fields, scope, segment, include_self
-                )
-                hits = find.find_motion(lib, motion_query)
-    _print_hits(hits, as_json, by_words=bool(words), with_times=scope != "clips")
+    fields: Any = filter_of(filter_json) or None
+    by_words: Any = {"mode": mode, "limit": limit, "filter": fields}
+    by_example: dict[str, Any] = {
+        "method": method.value,
+        "scope": scope,
+        "segment": segment,
+        "limit": limit,
+        "filter": fields,
+        "include_self": include_self,
+        "start": start,
+        "end": end,
+        "frame_rate": frame_rate,
+        "unit": unit,
+        "up_axis": up_axis,
+        "stack": stack,
+    }
+    with open_client(context) as client:
+        if query is None:
+            found = client.search.words(words or [], **by_words)
+            _print_words(found, as_json, as_csv)
+            return
+        with naming_missing(query, ADVICE):
+            arguments = query_of(query, skeleton=skeleton, **by_example)
+            hits = client.search.motion(**arguments)
+    times = ("start", "end") if scope != "clips" else ()
+    print_hits(hits, times, as_json=as_json, as_csv=as_csv)
 
 
 def recognize(
@@ -106,34 +117,41 @@ def recognize(
     up_axis: UpAxis = None,
     stack: Stack = None,
     as_json: AsJson = False,
+    as_csv: AsCsv = False,
 ) -> None:
     """Recognize the person and the task of a motion, and describe it with words."""
-    from app.api.schemas.recognition import Recognition
-    from app.services.recognition import recognize
-
-    with (
-        open_library(context) as lib,
-        source_of(
-            query,
-            skeleton=skeleton,
-            frame_rate=frame_rate,
-            unit=unit,
-            up_axis=up_axis,
-            stack=stack,
-        ) as source,
-    ):
-        request = recognize.RecognizeQuery(source, known_person, known_task, method)
-        recognized = recognize.recognize(lib, request)
-    answer = Recognition.of(recognized)
+    hints: Any = {
+        "known_person": known_person,
+        "known_task": known_task,
+        "method": method,
+        "frame_rate": frame_rate,
+        "unit": unit,
+        "up_axis": up_axis,
+        "stack": stack,
+    }
+    with open_client(context) as client, naming_missing(query):
+        answer = client.recognize(**query_of(query, skeleton=skeleton, **hints))
     if as_json:
-        print_json(answer.model_dump(mode="json"))
-        return
+        print_json(answer.to_json())
+    elif as_csv:
+        print_csv(("kind", "label", "score", "known"), _answer_rows(answer))
+    else:
+        rows = [
+            (name, _answer_text(one), one.score)
+            for name, one in (("person", answer.person), ("task", answer.task))
+        ]
+        print_table(("", "answer", "score"), rows)
+        print_table(("word", "score"), [(one.word, one.score) for one in answer.words])
+
+
+def _answer_rows(answer: Recognition) -> list[dict[str, Any]]:
+    """A row for each possible person, task and word. known: whether it is the answer."""
     rows = [
-        (name, _answer_text(one), one.score)
-        for name, one in (("person", answer.person), ("task", answer.task))
+        {"kind": kind, "label": c.label, "score": c.score, "known": c.label == one.label}
+        for kind, one in (("person", answer.person), ("task", answer.task))
+        for c in one.candidates
     ]
-    print_table(("", "answer", "score"), rows)
-    print_table(("word", "score"), [(one.word, one.score) for one in answer.words])
+    return rows + [{"kind": "word", "label": w.word, "score": w.score} for w in answer.words]
 
 
 def _answer_text(answer: Answer) -> str:
@@ -144,47 +162,7 @@ def _answer_text(answer: Answer) -> str:
     return f"unknown (nearest: {nearest})"
 
 
-def filter_of(text: str | None) -> dict[str, Any]:
-    """The fields of a filter in a JSON text; empty without a text. Raises BadField."""
-    try:
-        fields = json.loads(text) if text else {}
-    except ValueError as problem:
-        raise BadField("The filter is not JSON.", places=[Place("filter", str(problem))]) from None
-    if not isinstance(fields, dict):
-        raise BadField("The filter must be a JSON object.", places=[Place("filter", str(text))])
-    return fields
-
-
-def _print_hits(hits: Hits, as_json: bool, *, by_words: bool, with_times: bool) -> None:
-    """Print hits; with_times: with the start and the end of the part that was found."""
-    if as_json:
-        from app.api.schemas.search import MotionHits, WordHits
-
-        answer = (WordHits if by_words else MotionHits).model_validate(hits)
-        print_json(answer.model_dump(mode="json"))
-        return
-    print_table(
-        (
-            "rank",
-            "score",
-            *(("start", "end") if with_times else ()),
-            "name",
-            "person",
-            "task",
-            "id",
-        ),
-        [
-            (
-                hit.rank,
-                hit.score,
-                *((hit.start, hit.end) if with_times else ()),
-                hit.clip.full_name,
-                hit.clip.person,
-                hit.clip.task,
-                hit.clip.id,
-            )
-            for hit in hits.items
-        ],
-    )
-    if hits.unknown_words:
+def _print_words(hits: WordHits, as_json: bool, as_csv: bool) -> None:
+    print_hits(hits, (), as_json=as_json, as_csv=as_csv)
+    if hits.unknown_words and not as_json:
         typer.echo(f"No clip has the words: {', '.join(hits.unknown_words)}", err=True)

@@ -3,18 +3,32 @@
 from __future__ import annotations
 
 import json
+import os
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from app.cli.find import filter_of
-from app.cli.options import FilterJson, IncludeSelf
-from app.cli.output import AsJson, print_json, print_table
-from app.cli.query_source import FrameRate, Skeleton, Stack, Unit, UpAxis, source_of
-from app.cli.settings import open_library
-from app.errors import BadField, Place
+from app.cli.hits import print_hits
+from app.cli.options import FilterJson, IncludeSelf, filter_of
+from app.cli.output import AsCsv, AsJson
+from app.cli.query_source import (
+    FrameRate,
+    Skeleton,
+    Stack,
+    Unit,
+    UpAxis,
+    naming_missing,
+    source_of,
+)
+from app.cli.session import open_client
+from app.cli.settings import open_library, remote_of
+from app.errors import BadField, ConfigurationError, Place
 from app.search.pose.pose_matches import MatchesPerClip
+
+if TYPE_CHECKING:
+    from kinedex.types.pose import PoseHits as KinedexPoseHits
 
 
 def search_pose(
@@ -44,41 +58,86 @@ def search_pose(
     up_axis: UpAxis = None,
     stack: Stack = None,
     as_json: AsJson = False,
+    as_csv: AsCsv = False,
 ) -> None:
     """Find the clips that contain a pose, and the time of the pose in each."""
-    from app.services.find.by_pose import PoseQuery, find_pose
-
     if (query is None) == (positions is None):
         raise typer.BadParameter("give either a file or clip id with --time, or --positions")
     if query is not None and time is None:
         raise typer.BadParameter("--time is needed: the time of the pose in seconds")
     fields, pose = filter_of(filter_json), _read_positions(positions)
-    with open_library(context) as lib:
-        if query is None:
-            hits = find_pose(lib, PoseQuery(None, time, pose, places, limit, fields))
-        else:
-            with source_of(
-                query,
-                skeleton=skeleton,
-                frame_rate=frame_rate,
-                unit=unit,
-                up_axis=up_axis,
-                stack=stack,
-            ) as source:
-                hits = find_pose(
-                    lib, PoseQuery(source, time, None, places, limit, fields, include_self)
-                )
-    if as_json:
-        from app.api.schemas.pose import PoseHits
+    options: Any = {"places": places.value, "limit": limit, "filter": fields or None}
+    options["include_self"] = include_self
+    if query is not None and os.path.lexists(query):
+        source = _File(query, skeleton, frame_rate, unit, up_axis, stack)
+        hits = _search_file(
+            context, source, _Options(time or 0.0, places, limit, fields, include_self)
+        )
+    else:
+        with open_client(context) as client, naming_missing(query or ""):
+            hits = client.search.pose(clip_id=query, time=time, positions=pose, **options)
+    print_hits(hits, ("time",), as_json=as_json, as_csv=as_csv)
 
-        print_json(PoseHits.model_validate(hits).model_dump(mode="json"))
-        return
-    columns = ("rank", "score", "time", "name", "person", "task", "id")
-    rows = [
-        (h.rank, h.score, h.time, h.clip.full_name, h.clip.person, h.clip.task, h.clip.id)
-        for h in hits.items
-    ]
-    print_table(columns, rows)
+
+@dataclass(frozen=True, slots=True)
+class _File:
+    """A motion file that contains the pose, and hints to read it."""
+
+    path: str
+    skeleton: Path | None
+    frame_rate: float | None
+    unit: str | None
+    up_axis: str | None
+    stack: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class _Options:
+    """The options of a search by pose. time: seconds from the start of the file."""
+
+    time: float
+    places: MatchesPerClip
+    limit: int
+    fields: dict[str, Any]
+    include_self: bool
+
+
+def _search_file(context: typer.Context, file: _File, options: _Options) -> KinedexPoseHits:
+    """Search with a pose of a file, in the local library: the API takes no file for this search.
+
+    Raises ConfigurationError with --url.
+    """
+    from app.api.schemas.pose import PoseHits
+    from app.services.find.by_pose import PoseQuery, find_pose
+    from kinedex.types.pose import PoseHits as KinedexPoseHits
+
+    if remote_of(context) is not None:
+        raise ConfigurationError(
+            "A service takes no file for a search by pose. Import the file first, and give the id "
+            "of its clip; or give --positions."
+        )
+    with (
+        open_library(context) as lib,
+        source_of(
+            file.path,
+            skeleton=file.skeleton,
+            frame_rate=file.frame_rate,
+            unit=file.unit,
+            up_axis=file.up_axis,
+            stack=file.stack,
+        ) as source,
+    ):
+        query = PoseQuery(
+            source,
+            options.time,
+            None,
+            options.places,
+            options.limit,
+            options.fields,
+            options.include_self,
+        )
+        found = PoseHits.model_validate(find_pose(lib, query))
+    return KinedexPoseHits.from_json(found.model_dump(mode="json"))
 
 
 def _read_positions(path: Path | None) -> list[Any] | None:

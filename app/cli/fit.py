@@ -2,64 +2,66 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from contextlib import nullcontext
+from typing import TYPE_CHECKING
 
 import typer
 
-from app.cli.output import AsJson, print_json, print_table
-from app.cli.settings import open_library
+from app.cli.figures import shares
+from app.cli.output import AsCsv, AsJson, print_csv, print_json, print_table, progress_bar
+from app.cli.session import open_client
+from app.cli.settings import remote_of, settings_of
 
 if TYPE_CHECKING:
-    from app.store.jobs.record import JobRecord
+    from kinedex import Kinedex
+    from kinedex.types.jobs import Job
 
-COUNT_SUFFIX = "clips"
-"""Figures whose names end like this are counts, not shares."""
+FAILURE = 1
+PROGRESS_STEPS = 1000
+COLUMNS = ("model", "version", "clips", "held out", "figure")
 
 
-def fit(context: typer.Context, as_json: AsJson = False) -> None:
+def fit(context: typer.Context, as_json: AsJson = False, as_csv: AsCsv = False) -> None:
     """Fit the models on the current library, and show their held-out figures."""
-    from app.api.schemas.jobs import Job
-    from app.cli.library import FAILURE, follow, working
-    from app.services.training import models
-    from app.store.jobs.record import JobState
+    from app.cli.working import working_on
 
-    with open_library(context) as lib:
-        request = models.request_fit(lib)
-        with working(lib):
-            job = follow(lib, request.id, "fitting models")
-        fitted = models.list_models(lib)
+    is_local = remote_of(context) is None
+    with open_client(context) as client:
+        started = client.models.fit().job
+        with working_on(settings_of(context)) if is_local else nullcontext():
+            job = wait_for(client, started.id, "fitting models")
+        models = client.models.list()
+    rows = [
+        (model.kind, model.version, model.library_size, name, value)
+        for model in models
+        for name, value in shares(model.figures) or [("", None)]
+    ]
     if as_json:
-        print_json(Job.model_validate(job).model_dump(mode="json"))
+        print_json(job.to_json())
+    elif as_csv:
+        print_csv(COLUMNS, (dict(zip(COLUMNS, row, strict=True)) for row in rows))
     else:
-        rows = [
-            (model.kind, model.version, model.library_size, name, value)
-            for model in fitted
-            for name, value in _shares(model.meta.get("figures", {})) or [("", None)]
-        ]
-        print_table(("model", "version", "clips", "held out", "figure"), rows)
+        print_table(COLUMNS, rows)
         _print_failures(job)
-    if job.state is not JobState.SUCCEEDED:
+    if job.state != "succeeded":
         raise typer.Exit(FAILURE)
 
 
-def _print_failures(job: JobRecord) -> None:
+def wait_for(client: Kinedex, job_id: str, label: str) -> Job:
+    """Wait for the end of a job, with a progress bar; label: the text beside the bar."""
+    with progress_bar() as bar:
+        task = bar.add_task(label, total=PROGRESS_STEPS)
+
+        def show(job: Job) -> None:
+            bar.update(task, completed=round(job.progress * PROGRESS_STEPS))
+
+        return client.jobs.wait(job_id, on_progress=show, check=False)
+
+
+def _print_failures(job: Job) -> None:
     """Print the models that were not fitted with the reasons, and the error of the job."""
     for kind, outcome in (job.result or {}).get("models", {}).items():
         if "reason" in outcome:
             typer.echo(f"{kind}: {outcome['outcome']}: {outcome['reason']}", err=True)
-    if job.error:
-        typer.echo(f"kinedex: {job.error['detail']}", err=True)
-
-
-def _shares(figures: Any, path: str = "") -> list[tuple[str, float | None]]:
-    """The shares in nested figures, named by their path. Counts are left out.
-
-    path: the names of the dictionaries that contain `figures`, joined by spaces.
-    """
-    if isinstance(figures, list):
-        return [share for one in figures for share in _shares(one, path)]
-    if not isinstance(figures, dict):
-        is_share = isinstance(figures, float) and not path.endswith(COUNT_SUFFIX)
-        return [(path, figures)] if is_share else []
-    name = f"{path} {figures.get('method', '')}".strip()
-    return [s for key, value in figures.items() for s in _shares(value, f"{name} {key}".strip())]
+    if job.error is not None:
+        typer.echo(f"kinedex: {job.error.detail}", err=True)

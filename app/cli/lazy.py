@@ -32,11 +32,12 @@ class CommandEntry:
         """Import the module and return the command, ready to run."""
         definition = getattr(import_module(self.module), self.attribute)
         if isinstance(definition, typer.Typer):
+            definition.rich_markup_mode = None  # see `app.cli.main.program`
             group = get_group(definition)
             group.name = name
             return group
         # Typer turns functions into commands only inside a Typer object
-        single = typer.Typer(add_completion=False)
+        single = typer.Typer(add_completion=False, rich_markup_mode=None)
         single.command(name)(definition)
         return get_command(single)
 

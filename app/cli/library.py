@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import threading
 import time
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from app.cli.output import AsJson, print_json, progress_bar
-from app.cli.settings import open_library
+from app.cli.settings import open_library, remote_of
+from app.cli.working import working_on
 
 if TYPE_CHECKING:
     from app.services.imports.options import ImportOptions
@@ -81,6 +81,17 @@ def import_clips(
     values: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     if meta:
         values["metadata"] = metadata_of(meta)
+    if remote_of(context) is not None:
+        from app.cli.upload import import_to_service
+
+        import_to_service(
+            context,
+            path,
+            wait=wait,
+            as_json=as_json,
+            given={**values, "labels": labels, "overwrite": overwrite or None},
+        )
+        return
     with open_library(context) as lib:
         job = register(lib, path, ImportOptions(values, labels, overwrite))
         if wait:
@@ -88,9 +99,9 @@ def import_clips(
                 job = follow(lib, job.id, "analyzing")
                 fit_if_due(lib)
         if as_json:
-            print_json(import_report.document(lib, job))
+            print_json(import_report.local_document(lib, job))
         elif wait or not job.is_open:
-            import_report.show(lib, job)
+            import_report.show(job, import_report.local_files(lib, job.id))
         else:
             typer.echo(f"{job.id}: registered; a worker analyzes the clips.")
     if code := import_report.exit_code(job):
@@ -126,19 +137,9 @@ def register(lib: Library, path: Path, options: ImportOptions | None = None) -> 
         return job
 
 
-@contextmanager
-def working(lib: Library) -> Iterator[None]:
+def working(lib: Library) -> AbstractContextManager[None]:
     """Run a worker in a thread; it shares the queue with workers of other processes."""
-    from app.worker.loop import run_worker
-
-    stop = threading.Event()
-    worker = threading.Thread(target=run_worker, args=(lib.settings, stop), name="worker")
-    worker.start()
-    try:
-        yield
-    finally:
-        stop.set()
-        worker.join()
+    return working_on(lib.settings)
 
 
 def follow(lib: Library, job_id: str, label: str) -> JobRecord:

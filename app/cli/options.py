@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+import json
+from typing import Annotated, Any
 
 import typer
+
+from app.errors import BadField, Place
 
 FilterJson = Annotated[
     str | None,
@@ -26,3 +29,14 @@ By = Annotated[
 PictureFormat = Annotated[
     str, typer.Option(help="Format of the pictures in a folder: svg, png or pdf.")
 ]
+
+
+def filter_of(text: str | None) -> dict[str, Any]:
+    """The fields of a filter in a JSON text; empty without a text. Raises BadField."""
+    try:
+        fields = json.loads(text) if text else {}
+    except ValueError as problem:
+        raise BadField("The filter is not JSON.", places=[Place("filter", str(problem))]) from None
+    if not isinstance(fields, dict):
+        raise BadField("The filter must be a JSON object.", places=[Place("filter", str(text))])
+    return fields

@@ -1,11 +1,13 @@
-"""The output of commands: JSON for programs, tables for people."""
+"""The output of commands: JSON and CSV for programs, tables for people."""
 
 from __future__ import annotations
 
+import csv
 import json
 import os
+import sys
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Annotated, Any
 
 import typer
@@ -15,6 +17,7 @@ from rich.table import Table
 from rich.text import Text
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+AsCsv = Annotated[bool, typer.Option("--csv", help="Print CSV (RFC 4180), with a header.")]
 
 MAX_WIDTH = 100
 """Characters in a line of the output for people."""
@@ -32,20 +35,45 @@ def print_json(value: Any) -> None:
     typer.echo(json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False))
 
 
+def print_csv(columns: Sequence[str], documents: Iterable[Mapping[str, Any]]) -> None:
+    """Print JSON objects as CSV (RFC 4180) to standard output.
+
+    columns: the members to print; `clip.name` is the member `name` of the member `clip`. null is an
+    empty field, lists of texts are joined by spaces, other lists and objects are JSON.
+    """
+    from kinedex.tables import flat
+
+    writer = csv.writer(sys.stdout, lineterminator="\r\n")
+    writer.writerow(columns)
+    for document in documents:
+        row = flat(document)
+        writer.writerow([_csv_cell(row.get(name)) for name in columns])
+
+
 def print_text(text: str) -> None:
     """Print text; longer lines are wrapped at MAX_WIDTH characters."""
     for line in _printable(text).split("\n"):
         typer.echo(textwrap.fill(line, MAX_WIDTH, break_long_words=False, break_on_hyphens=False))
 
 
-def print_table(columns: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
-    """Print a table. A column that has only numbers is aligned to the right."""
-    table = Table(box=None, header_style="bold", pad_edge=False)
+def print_table(
+    columns: Sequence[str], rows: Sequence[Sequence[object]], *, cut: Collection[str] = ()
+) -> None:
+    """Print a table. A column that has only numbers is aligned to the right.
+
+    cut: columns whose texts are cut, with an ellipsis, if the table is too wide. Others are
+    wrapped. Ids are always complete, so that they can be copied.
+    """
+    table = Table(box=None, header_style="bold", pad_edge=False, show_header=any(columns))
     for index, name in enumerate(columns):
-        is_numeric = bool(rows) and all(isinstance(row[index], int | float) for row in rows)
-        table.add_column(name, justify="right" if is_numeric else "left")
+        cells = [row[index] for row in rows]
+        is_numeric = bool(cells) and all(isinstance(cell, int | float) for cell in cells)
+        is_id = name == "id"
+        table.add_column(name, justify="right" if is_numeric else "left", no_wrap=is_id)
+        if is_id:
+            table.columns[-1].min_width = max((len(str(cell)) for cell in cells), default=0)
     for row in rows:
-        table.add_row(*(Text(_printable(cell)) for cell in row))
+        table.add_row(*(_cell(cell, name in cut) for name, cell in zip(columns, row, strict=True)))
     console.print(table)
 
 
@@ -58,6 +86,18 @@ def progress_bar() -> Progress:
         TimeRemainingColumn(),
         console=Console(stderr=True),
     )
+
+
+def _cell(cell: object, is_cut: bool) -> Text:
+    if is_cut:
+        return Text(_printable(cell).replace("\n", " "), no_wrap=True, overflow="ellipsis")
+    return Text(_printable(cell))
+
+
+def _csv_cell(cell: object) -> object:
+    if isinstance(cell, bool):
+        return "true" if cell else "false"
+    return json.dumps(cell, ensure_ascii=False) if isinstance(cell, list | dict) else cell
 
 
 def _printable(cell: object) -> str:

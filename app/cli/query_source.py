@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -35,6 +35,39 @@ Unit = Annotated[
 UpAxis = Annotated[
     str | None, typer.Option(help="Axis of the file that points up: x, y, z, -x, -y or -z.")
 ]
+
+
+def query_of(query: str, *, skeleton: Path | None = None, **hints: Any) -> dict[str, Any]:
+    """The arguments of a call of the client: the file at the path `query`, else the clip's id.
+
+    skeleton: an ASF file. hints: further arguments; those that are None are left out. Raises
+    BadField if a file cannot be read.
+    """
+    given = {name: value for name, value in hints.items() if value is not None}
+    if not os.path.lexists(query):
+        return {"clip_id": query, **given}
+    files = {"file": Path(query), "skeleton": skeleton}
+    for path in files.values():
+        with _opened(path):
+            pass
+    return {**{name: path for name, path in files.items() if path is not None}, **given}
+
+
+@contextmanager
+def naming_missing(query: str, advice: str = "") -> Iterator[None]:
+    """Say that there is no file either, if there is no clip with the id `query`.
+
+    advice: a sentence that is added to the message. Raises ClipNotFound instead.
+    """
+    from kinedex import KinedexError
+
+    try:
+        yield
+    except KinedexError as problem:
+        if problem.code != ClipNotFound.code or os.path.lexists(query):
+            raise
+        detail = f"There is no file {query!r}, and no clip has that id.{advice}"
+        raise ClipNotFound(detail) from None
 
 
 @contextmanager

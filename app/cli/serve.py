@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from app.cli.settings import settings_of
+from app.cli.settings import refuse_missing_library, settings_of
 
 if TYPE_CHECKING:
     from app.config import Settings
@@ -67,6 +67,7 @@ def worker(
     from app.worker.loop import run_worker
 
     settings = settings_of(context)
+    refuse_missing_library(settings, "worker")
     stop = threading.Event()
     # a worker that is stopped finishes or returns its job before it exits
     for number in (signal.SIGTERM, signal.SIGINT):

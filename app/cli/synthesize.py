@@ -9,10 +9,13 @@ import typer
 
 from app.cli.files import write_whole
 from app.cli.output import AsJson, print_json, print_table
-from app.cli.settings import open_library
+from app.cli.session import open_client
 
 if TYPE_CHECKING:
-    from app.services.synthesis.synthesize import Synthesized
+    from kinedex.types.synthesis import Quality, Synthesis
+
+LEFT_OUT = {"motion", "bvh"}
+"""Members of the answer that the JSON leaves out: the file contains the motion."""
 
 
 def synthesize(
@@ -38,53 +41,41 @@ def synthesize(
     as_json: AsJson = False,
 ) -> None:
     """Synthesize a motion that a person never recorded, as a BVH file, and report its quality."""
-    from app.services.synthesis.synthesize import SynthesisQuery, synthesize
-
     if (person is None) == (not clip):
         raise typer.BadParameter("give either --person or --clip, not both")
-    query = SynthesisQuery(
-        task=task,
-        person=person,
-        clip_ids=tuple(clip) if clip else None,
-        seconds=seconds,
-        store=store,
-    )
-    with open_library(context) as lib:
-        synthesized = synthesize(lib, query)
-    person_name = synthesized.person or "someone"
-    path = output or Path(f"{_file_name(f'{person_name} {synthesized.name}')}.bvh")
-    write_whole(path, [synthesized.bvh])
+    with open_client(context) as client:
+        made = client.synthesize(
+            task, person=person, clip_ids=clip or None, seconds=seconds, store=store, bvh=True
+        )
+    content = (made.bvh or "").encode()
+    title = f"{made.clip.person or 'someone'} {made.clip.name}"
+    path = output or Path(f"{_file_name(title)}.bvh")
+    write_whole(path, [content])
     if as_json:
-        from app.api.schemas.synthesis import Synthesis
-
-        document = Synthesis.of(synthesized, with_bvh=False)
-        result = document.model_dump(mode="json", exclude={"motion"})
-        print_json({"path": str(path), "bytes": len(synthesized.bvh)} | result)
-        return
-    _print_quality(synthesized, path)
+        result = {name: one for name, one in made.to_json().items() if name not in LEFT_OUT}
+        print_json({"path": str(path), "bytes": len(content)} | result)
+    else:
+        print_table(("", ""), _quality_rows(made, path, len(content)))
 
 
-def _print_quality(synthesized: Synthesized, path: Path) -> None:
-    quality, duration = synthesized.quality, synthesized.motion.duration
+def _quality_rows(made: Synthesis, path: Path, size: int) -> list[tuple[str, object]]:
+    quality = made.quality
     rows: list[tuple[str, object]] = [
-        ("file", f"{path}: {len(synthesized.bvh)} bytes, {duration:.2f} s"),
-        ("made from", _donors(synthesized)),
-        ("nearest real clip", quality.nearest.full_name if quality.nearest else "deleted"),
+        ("file", f"{path}: {size} bytes, {made.clip.duration or 0:.2f} s"),
+        ("made from", _donors(quality)),
+        ("nearest real clip", quality.nearest_clip.name if quality.nearest_clip else "deleted"),
         ("its labels", f"{quality.nearest_person}, {quality.nearest_task}"),
-        ("expected accuracy", _expected_accuracy(synthesized)),
+        ("expected accuracy", _expected_accuracy(quality)),
         ("speed of sliding feet", f"{quality.skate:.2f} m/s{_real_skate(quality.real_skate)}"),
     ]
-    if synthesized.clip is not None:
-        rows.append(("stored as", synthesized.clip.id))
-    print_table(("", ""), rows)
+    if made.clip.id is not None:
+        rows.append(("stored as", made.clip.id))
+    return rows
 
 
-def _donors(synthesized: Synthesized) -> str:
+def _donors(quality: Quality) -> str:
     """The takes from which the motion was made."""
-    from app.services.synthesis.plan import SynthesisKind
-
-    quality = synthesized.quality
-    if quality.kind is SynthesisKind.SEEN:
+    if quality.kind == "seen":
         takes = (
             "one of the person's own takes, because they differ too much"
             if quality.follows
@@ -97,9 +88,8 @@ def _donors(synthesized: Synthesized) -> str:
     return f"{tasks} tasks of the person, and takes of this task by {persons} other persons"
 
 
-def _expected_accuracy(synthesized: Synthesized) -> str:
+def _expected_accuracy(quality: Quality) -> str:
     """How often synthesized motions like this one were recognized with the right labels."""
-    quality = synthesized.quality
     if quality.expected_hit is None:
         return "not measured"
     return (

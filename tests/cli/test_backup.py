@@ -35,6 +35,7 @@ def test_a_copy_is_a_complete_library(kinedex: Kinedex, tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["a?b", "a%20b", "100%"])
 def test_paths_may_contain_any_characters(kinedex: Kinedex, tmp_path: Path, name: str) -> None:
     data_dir, copy = tmp_path / f"d {name}", tmp_path / name
+    data_dir.mkdir()
     assert kinedex("db", "upgrade", data_dir=data_dir).code == 0
     made = kinedex("backup", str(copy), "--json", data_dir=data_dir).json()
     assert made["path"] == str(copy)

@@ -63,6 +63,7 @@ def test_a_missing_path_is_refused(kinedex: Kinedex) -> None:
 
 
 def test_db_upgrade_creates_and_upgrades_the_database(kinedex: Kinedex, tmp_path: Path) -> None:
+    (tmp_path / "new").mkdir()
     for _ in range(2):
         ended = kinedex("--data-dir", str(tmp_path / "new"), "db", "upgrade")
         assert (ended.code, ended.err) == (0, "")

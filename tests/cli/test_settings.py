@@ -92,9 +92,50 @@ def test_each_wrong_setting_is_named(kinedex: Kinedex) -> None:
 
 
 def test_a_flag_has_priority_over_the_environment(kinedex: Kinedex, tmp_path: Path) -> None:
-    ended = kinedex("--data-dir", str(tmp_path / "flag"), "keys", "list", "--json")
-    assert ended.json() == []
-    assert (tmp_path / "flag" / "kinedex.sqlite3").is_file()
+    (tmp_path / "flag").mkdir()
+    flag = ("--data-dir", str(tmp_path / "flag"))
+    assert kinedex(*flag, "keys", "create").code == 0
+    assert kinedex("keys", "create", *flag).code == 0
+    keys = kinedex("keys", "list", f"--data-dir={tmp_path / 'flag'}", "--json").json()
+    assert len(keys) == 2
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("keys", "list"),
+        ("keys", "create"),
+        ("search", "--words", "kick"),
+        ("clips", "list"),
+        ("jobs", "list"),
+        ("status",),
+        ("fit",),
+        ("reanalyze",),
+        ("verify",),
+        ("db", "upgrade"),
+        ("backup", "copy"),
+        ("export", "x"),
+        ("evaluate", "words"),
+        ("worker",),
+    ],
+    ids=" ".join,
+)
+def test_a_wrong_name_of_the_data_directory_makes_no_library(
+    words: tuple[str, ...], kinedex: Kinedex, tmp_path: Path
+) -> None:
+    ended = kinedex(*words, "--data-dir", str(tmp_path / "typo"))
+    assert (ended.code, ended.out) == (1, "")
+    assert ended.err.count("typo: the folder does not exist") == 1
+    assert not (tmp_path / "typo").exists()
+
+
+@pytest.mark.parametrize("words", [("keys", "list"), ("status",)], ids=" ".join)
+def test_a_command_that_reads_makes_no_library_in_an_empty_folder(
+    words: tuple[str, ...], kinedex: Kinedex, tmp_path: Path
+) -> None:
+    ended = kinedex(*words, data_dir=tmp_path)
+    assert (ended.code, ended.err) == (1, f"kinedex: There is no library in {tmp_path}.\n")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_the_version_and_the_commands_are_printed(kinedex: Kinedex) -> None:

@@ -93,9 +93,9 @@ def test_a_search_imports_only_what_it_needs(
     clip = kinedex("search", "--words", "kick", "--limit", "1", "--json").json()["items"][0]["clip"]
     found = run("search", *(word.format(id=clip["id"]) for word in words), data_dir=data_dir)
     assert "rank" in found.out
-    assert found.imported(WEB | SCIENCE | {"alembic"}) == []
-    # 0.7 s on an idle machine, 2.3 to 3.2 s when everything was imported first.
-    assert found.cpu < 1.8
+    assert found.imported(SCIENCE | {"alembic"}) == []
+    others = ("app.api.app", "app.api.routes.synthesize", "app.api.routes.studies")
+    assert found.imported(set(others)) == []  # only the routes of the search
 
 
 @pytest.mark.parametrize(

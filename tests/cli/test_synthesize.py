@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from app.errors import NotFound
 from app.formats.read import read_recording
 from app.services.library.library import Library
 from app.store.clips.record import ClipRecord
+from kinedex import KinedexError
 from tests.cli.in_process import Run, running
 from tests.libraries import ready_clips, ready_library, some_demo_clips  # noqa: F401
 
@@ -51,5 +51,6 @@ def test_wrong_arguments_are_refused(run: Run) -> None:
     assert run("walk").exit_code == 2
     assert run("walk", "--person", "ada", "--clip", "x").exit_code == 2
     unknown = run("walk", "--person", "nobody").exception
-    assert isinstance(unknown, NotFound)
-    assert [place.location for place in unknown.places] == ["person"]
+    assert isinstance(unknown, KinedexError)
+    assert (unknown.status, unknown.code) == (404, "not_found")
+    assert [place.location for place in unknown.errors] == ["body.person"]

@@ -106,6 +106,7 @@ def test_only_adopt_files_connects_files_to_another_database(
     kinedex: Kinedex, copied: Path
 ) -> None:
     other = copied.parent / "other"
+    other.mkdir()
     assert kinedex("db", "upgrade", data_dir=other).code == 0
     shutil.copy(other / DATABASE, copied / DATABASE)
     refused = kinedex("keys", "list", data_dir=copied)
@@ -117,7 +118,9 @@ def test_only_adopt_files_connects_files_to_another_database(
     assert len(stored(copied)) == files
 
 
-def test_a_new_data_directory_is_private_to_its_owner(kinedex: Kinedex, tmp_path: Path) -> None:
-    made = tmp_path / "made"
-    assert kinedex("keys", "list", data_dir=made).code == 0
+def test_a_new_data_directory_is_private_to_its_owner(
+    kinedex: Kinedex, folder: Path, tmp_path: Path
+) -> None:
+    made, file = tmp_path / "made", folder / "ada" / "walk_01.bvh"
+    assert kinedex("import", str(file), "--no-wait", data_dir=made).code == 0
     assert stat.S_IMODE(made.stat().st_mode) == 0o700

@@ -36,10 +36,13 @@ class Outgoing(BaseModel):
     """An answer. It shows the fields that its class names and no others.
 
     `model_validate` builds it from a value that has attributes of the same names. A field with
-    `validation_alias` reads the attribute of that name.
+    `validation_alias` reads the attribute of that name. Its validator is built when it is first
+    used: a command calls one route, but imports the schemas of many.
     """
 
-    model_config = ConfigDict(extra="forbid", from_attributes=True, validate_by_name=True)
+    model_config = ConfigDict(
+        extra="forbid", from_attributes=True, validate_by_name=True, defer_build=True
+    )
 
 
 class Paged(Outgoing):

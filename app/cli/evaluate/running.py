@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 import typer
 
-from app.cli.find import filter_of
+from app.cli.options import filter_of
 from app.cli.output import progress_bar
 from app.cli.settings import open_library
 from app.search.index.filters import parse_filter

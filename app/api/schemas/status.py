@@ -1,0 +1,33 @@
+"""The status of the library."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from app.api.schemas.base import Outgoing
+
+
+class QueueStatus(Outgoing):
+    """Open jobs of one kind in one state."""
+
+    kind: str
+    state: str
+    count: int
+    oldest_s: float = Field(description="Age of the oldest of them, seconds.")
+
+
+class DiskStatus(Outgoing):
+    """The disk of the library's files."""
+
+    free: int = Field(description="Bytes.")
+    total: int = Field(description="Bytes.")
+
+
+class Status(Outgoing):
+    """What the library holds, what waits, and how full its disk is."""
+
+    version: str = Field(description="The version of Kinedex.")
+    library_version: int
+    clips: dict[str, int] = Field(description="Number of clips by state.")
+    jobs: list[QueueStatus] = Field(description="Open jobs by kind and state, the oldest first.")
+    disk: DiskStatus

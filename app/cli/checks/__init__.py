@@ -1,0 +1,1 @@
+"""The checks of `kinedex doctor`."""

@@ -1,0 +1,160 @@
+"""Checks the installation and the library of this machine. Nothing is created or changed."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import stat
+import tempfile
+from collections.abc import Iterator
+from importlib.util import find_spec
+from typing import TYPE_CHECKING
+
+import typer
+
+from app.cli.checks.finding import Finding, fine, note, problem
+from app.cli.checks.queue import check_disk, check_queue
+from app.cli.settings import settings_of
+from app.errors import ConfigurationError, KinedexError
+
+if TYPE_CHECKING:
+    from app.config import Settings
+    from app.store.store import Store
+
+EXTRAS = {
+    "audio": ("soundfile", "beats from recordings"),
+    "plots": ("matplotlib", "pictures of `kinedex evaluate`"),
+    "words": ("wn", "words of similar meaning"),
+    "dataframes": ("pandas", "`to_dataframe()` of the Python client"),
+}
+"""By extra: the module that it installs, and what needs it."""
+REPAIR = (
+    "Stop all processes of Kinedex, and restore a backup (see Backup in the README); "
+    "`kinedex verify` lists all damage."
+)
+
+
+def check_machine(context: typer.Context) -> Iterator[Finding]:
+    """The settings, the data directory, the database, the files, the worker, port and extras."""
+    try:
+        settings = settings_of(context)
+    except ConfigurationError as failure:
+        yield problem("settings", failure.detail, "Correct these settings.")
+        return
+    yield fine("settings", "all settings are valid")
+    folder = list(_check_folder(settings))
+    yield from folder
+    if settings.data_dir.is_dir():
+        yield check_disk(shutil.disk_usage(settings.data_dir).free)
+        yield from _check_library(settings)
+    yield _check_address(settings)
+    yield from _check_extras()
+
+
+def _check_folder(settings: Settings) -> Iterator[Finding]:
+    path = settings.data_dir
+    if not path.is_dir():
+        yield problem(
+            "data directory",
+            f"{path} {'is not a folder' if path.exists() else 'does not exist'}",
+            "Correct --data-dir or KINEDEX_DATA_DIR, or make a library: `kinedex serve`.",
+        )
+        return
+    try:
+        with tempfile.TemporaryFile(dir=path):
+            yield fine("data directory", f"{path.resolve()} can be written")
+    except OSError as failure:
+        advice = f"Run Kinedex as the owner of {path}, or change its rights."
+        yield problem("data directory", f"{path} cannot be written: {failure.strerror}", advice)
+    mode = stat.S_IMODE(path.stat().st_mode)
+    if mode & stat.S_IRWXO:
+        found = f"all accounts of this machine can open {path} (mode {mode:o})"
+        yield note("permissions", found, f"Close it: chmod 700 {path}")
+    elif path.stat().st_uid != os.geteuid():
+        yield note("permissions", f"another account owns {path}")
+
+
+def _check_library(settings: Settings) -> Iterator[Finding]:
+    """The database and the files of an existing library."""
+    from app.store import identity
+    from app.store.database import schema
+    from app.store.store import Store
+
+    try:
+        if not identity.is_database_there(settings.database):
+            identity.refuse_files_without_database(settings.database, settings.files_dir)
+            yield note("database", "there is no library yet", "`kinedex serve` makes one.")
+            return
+        schema.check(settings.database)
+        library_id = identity.check(settings.database, settings.files_dir)
+        store = Store.open(settings.database, settings.files_dir, library_id)
+    except KinedexError as failure:
+        yield problem("database", failure.detail, _advice_for(failure))
+        return
+    yield fine("database", f"schema {schema.state(settings.database).current} is current")
+    try:
+        yield from _check_store(store)
+    finally:
+        store.close()
+
+
+def _check_store(store: Store) -> Iterator[Finding]:
+    from datetime import UTC, datetime
+
+    from app.store.jobs import references
+    from app.store.upkeep.counts import count_clips_by_state, count_open_jobs
+
+    try:
+        damage = store.database.find_damage(quick=True)
+        if damage:
+            yield problem("database", f"it is damaged: {damage[0]}", REPAIR)
+        else:
+            yield fine("integrity", "a quick check found no damage")
+        with store.read() as tx:
+            needed, jobs = references.referenced(tx), count_open_jobs(tx)
+            clips = count_clips_by_state(tx)
+    except KinedexError as failure:
+        yield problem("database", failure.detail, REPAIR)
+        return
+    missing = sum(1 for sha256 in needed if not store.files.has(sha256))
+    if missing:
+        found = f"{missing} of {len(needed)} stored files are missing"
+        advice = "Put the folder `files` back, or upload the files again: `kinedex verify`."
+        yield problem("files", found, advice)
+    else:
+        yield fine("files", f"all {len(needed)} stored files are there")
+    if clips.get("failed"):
+        advice = "`kinedex clips list --state failed` lists them, `clips show` says why."
+        yield note("clips", f"{clips['failed']} clips could not be analyzed", advice)
+    now = datetime.now(UTC)
+    yield check_queue([(j.kind, j.state, j.count, (now - j.oldest).total_seconds()) for j in jobs])
+
+
+def _advice_for(failure: KinedexError) -> str:
+    return {
+        "database_out_of_date": "Stop Kinedex, make a backup, and run `kinedex db upgrade`.",
+        "library_mismatch": "Follow the sentence above; `kinedex db adopt-files` is the last way.",
+        "configuration": "Correct KINEDEX_DATABASE_URL.",
+    }.get(failure.code, REPAIR)
+
+
+def _check_address(settings: Settings) -> Finding:
+    from app.services.exposure import refuse_taken_address
+
+    address = f"{settings.host} port {settings.port}"
+    try:
+        refuse_taken_address(settings)
+    except ConfigurationError:
+        found = f"{address} is in use, perhaps by Kinedex itself"
+        advice = "If Kinedex does not run, choose another port: KINEDEX_PORT or --port."
+        return note("port", found, advice)
+    return fine("port", f"{address} is free: no service runs there")
+
+
+def _check_extras() -> Iterator[Finding]:
+    for extra, (module, purpose) in EXTRAS.items():
+        if find_spec(module) is None:
+            advice = f"Install it if you need it: pip install 'kinedex[{extra}]'"
+            yield note("extras", f"`{extra}` is not installed ({purpose})", advice)
+        else:
+            yield fine("extras", f"`{extra}` is installed")

@@ -1,0 +1,52 @@
+"""The output of searches."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from app.cli.output import print_csv, print_json, print_table
+
+COLUMNS = (
+    "rank",
+    "score",
+    "distance",
+    "start",
+    "end",
+    "time",
+    "clip.id",
+    "clip.name",
+    "clip.person",
+    "clip.task",
+    "clip.words",
+    "clip.duration",
+)
+"""The columns of hits as CSV. A search by pose has `time` instead of `start` and `end`."""
+
+
+def print_hits(hits: Any, times: Sequence[str], *, as_json: bool, as_csv: bool) -> None:
+    """Print a page of hits.
+
+    hits: a page of the client (MotionHits, WordHits or PoseHits). times: the fields that say which
+    part of each clip was found.
+    """
+    if as_json:
+        print_json(hits.to_json())
+    elif as_csv:
+        others = {"start", "end", "time"} - set(times)
+        print_csv([name for name in COLUMNS if name not in others], hits.to_json()["items"])
+    else:
+        columns = ("rank", "score", *times, "name", "person", "task", "id")
+        rows = [
+            (
+                hit.rank,
+                hit.score,
+                *(getattr(hit, name) for name in times),
+                hit.clip.name,
+                hit.clip.person,
+                hit.clip.task,
+                hit.clip.id,
+            )
+            for hit in hits
+        ]
+        print_table(columns, rows, cut=("name", "person", "task"))

@@ -1,0 +1,1 @@
+"""Functions that build the calls, generated from the OpenAPI description."""

@@ -1,0 +1,67 @@
+"""Calls: clip views. Generated from the OpenAPI description by `make client`."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from kinedex.call import OCTETS, Call, path_of, record, text
+from kinedex.positions import Positions, positions
+from kinedex.sent import given
+from kinedex.types.views import Descriptor, Motion
+
+
+def get_motion(
+    clip_id: str, *, fps: float | None = None, joints: Literal["all", "roles"] | None = None
+) -> Call[Motion]:
+    """Joint positions: JSON, or little-endian float32 for `Accept: application/octet-stream`.
+
+    fps: The motion is resampled to this rate. Default: the clip's own rate.
+    joints: All joints, or the 13 joints of figure 2 in Sun 2011, in its order. Default: all.
+    """
+    return Call(
+        "get_motion",
+        "GET",
+        path_of("/v1/clips/{clip_id}/motion", clip_id=clip_id),
+        record(Motion),
+        query=given(fps=fps, joints=joints),
+    )
+
+
+def get_motion_array(
+    clip_id: str, *, fps: float | None = None, joints: Literal["all", "roles"] | None = None
+) -> Call[Positions]:
+    """Joint positions: JSON, or little-endian float32 for `Accept: application/octet-stream`. The
+    answer is an array.
+
+    fps: The motion is resampled to this rate. Default: the clip's own rate.
+    joints: All joints, or the 13 joints of figure 2 in Sun 2011, in its order. Default: all.
+    """
+    return Call(
+        "get_motion",
+        "GET",
+        path_of("/v1/clips/{clip_id}/motion", clip_id=clip_id),
+        positions,
+        query=given(fps=fps, joints=joints),
+        accept=OCTETS,
+    )
+
+
+def get_descriptor(clip_id: str) -> Call[Descriptor]:
+    """The arrays by which the clip is compared with others."""
+    return Call(
+        "get_descriptor",
+        "GET",
+        path_of("/v1/clips/{clip_id}/descriptor", clip_id=clip_id),
+        record(Descriptor),
+    )
+
+
+def get_thumbnail(clip_id: str) -> Call[str]:
+    """The clip as a small picture."""
+    return Call(
+        "get_thumbnail",
+        "GET",
+        path_of("/v1/clips/{clip_id}/thumbnail.svg", clip_id=clip_id),
+        text,
+        accept="*/*",
+    )

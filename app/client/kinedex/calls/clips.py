@@ -1,0 +1,284 @@
+"""Calls: clips. Generated from the OpenAPI description by `make client`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Literal
+
+from kinedex.call import Call, nothing, path_of, read_bytes, record
+from kinedex.sent import UNSET, FileInput, Progress, Unset, corrections, given
+from kinedex.types.choices import ClipState
+from kinedex.types.clips import Clip, ClipCreated, ClipList
+
+
+def list_clips(
+    *,
+    person: str | Sequence[str] | None = None,
+    task: str | Sequence[str] | None = None,
+    word: str | Sequence[str] | None = None,
+    license: str | Sequence[str] | None = None,
+    source: str | Sequence[str] | None = None,
+    not_person: str | Sequence[str] | None = None,
+    not_task: str | Sequence[str] | None = None,
+    not_word: str | Sequence[str] | None = None,
+    not_license: str | Sequence[str] | None = None,
+    not_source: str | Sequence[str] | None = None,
+    folder: str | Sequence[str] | None = None,
+    not_folder: str | Sequence[str] | None = None,
+    min_duration: float | None = None,
+    max_duration: float | None = None,
+    state: ClipState | None = None,
+    q: str | None = None,
+    sort: Literal[
+        "created_at",
+        "-created_at",
+        "name",
+        "-name",
+        "duration",
+        "-duration",
+        "person",
+        "-person",
+        "task",
+        "-task",
+    ]
+    | None = None,
+    limit: int | None = None,
+    cursor: str | None = None,
+    fields: Sequence[str] | None = None,
+) -> Call[ClipList]:
+    """List the clips that pass every filter. Repeat a label parameter to accept several values.
+
+    `meta.KEY=VALUE` filters by metadata, `not_meta.KEY=VALUE` leaves clips with that value out,
+    and `meta.KEY.min=30`, `meta.KEY.max=40` filter by a number; `GET /v1/metadata` lists the
+    keys.
+
+    not_person: Clips of none of these persons.
+    not_task: Clips of none of these tasks.
+    not_word: Clips with none of these words.
+    not_license: Clips with none of these licenses.
+    not_source: Clips from none of these sources.
+    folder: Clips whose files were in this folder of an import, or below it.
+    not_folder: Clips of none of these folders.
+    min_duration: Seconds.
+    max_duration: Seconds.
+    q: Part of the name, of the path, or of a text of the metadata.
+    sort: A minus sign at the start reverses the order. Default: -created_at.
+    limit: Maximum number of items in all; None lists all.
+    cursor: Where the list starts: `next` of an earlier page.
+    """
+    return Call(
+        "list_clips",
+        "GET",
+        "/v1/clips",
+        record(ClipList),
+        query=given(
+            person=person,
+            task=task,
+            word=word,
+            license=license,
+            source=source,
+            not_person=not_person,
+            not_task=not_task,
+            not_word=not_word,
+            not_license=not_license,
+            not_source=not_source,
+            folder=folder,
+            not_folder=not_folder,
+            min_duration=min_duration,
+            max_duration=max_duration,
+            state=state,
+            q=q,
+            sort=sort,
+            limit=limit,
+            cursor=cursor,
+            fields=fields,
+        ),
+    )
+
+
+def create_clip(
+    file: FileInput,
+    *,
+    skeleton: FileInput | None = None,
+    audio: FileInput | None = None,
+    name: str | None = None,
+    person: str | None = None,
+    task: str | None = None,
+    words: str | Sequence[str] | None = None,
+    license: str | None = None,
+    source: str | None = None,
+    metadata: str | None = None,
+    path: str | None = None,
+    on_conflict: Literal["keep", "update", "error"] | None = None,
+    frame_rate: float | None = None,
+    unit: str | None = None,
+    up_axis: Literal["x", "y", "z", "-x", "-y", "-z"] | None = None,
+    roles: str | None = None,
+    stack: str | None = None,
+    audio_offset: float | None = None,
+    tempo: float | None = None,
+    beats: str | None = None,
+    progress: Progress | None = None,
+) -> Call[ClipCreated]:
+    """Store a clip. A worker analyzes it: then it is `ready`, or `failed` with an `error`.
+
+    If the library has the same bytes already, the answer is their clip. `differences` lists the
+    labels and hints that came with other values, and `on_conflict` says what happens to them.
+
+    file: The motion: BVH, AMC, C3D, TRC, FBX, GLB, glTF, VRM, MVNX, NPZ, NPY, CSV of Motive or
+        Nexus, TSV of Qualisys, or JSON of 3-D keypoints.
+    skeleton: The ASF file that an AMC file needs.
+    audio: The recording that goes with the motion: WAV, FLAC, OGG or MP3.
+    name: Default: the file's name.
+    words: Separated by spaces. In a phrase, underscores replace spaces.
+    metadata: JSON: values of your own by key, as in {"condition": "fatigued", "age": 30}.
+    path: Where the file was, relative to a folder of yours, as in `cmu/02/02_01.bvh`.
+    on_conflict: If the library has the same bytes already, with other labels or hints: keep the
+        stored values; update them; or answer 409 and change nothing. `differences` lists the
+        fields. A field that is not sent stays as it is. Default: keep.
+    frame_rate: It replaces the frame rate that the file declares.
+    unit: m, dm, cm, mm, in, ft, cmu (unit of the CMU files), or meters per unit.
+    up_axis: The axis of the file that points up. Without it, the axis that the file says is
+        used, else the one along which the body stands: then the clip has the warning
+        `up_axis_guessed`.
+    roles: JSON: joint name by role, as in {"hips": "Pelvis"}; a list of two names is for their
+        middle, as in {"hips": ["LHip", "RHip"]}. A body that seems to be an animal is refused as
+        `skeleton_not_human`, with the reasons, unless roles are sent.
+    stack: The name of the animation stack to read, if an FBX file has several; default: the
+        longest. The clip's warning `stack_chosen` lists them.
+    audio_offset: Time in the motion at which the recording begins, seconds; may be negative.
+        Default: estimated.
+    tempo: Beats per minute, if known.
+    beats: Seconds, separated by spaces, as in `0.5 1.1`. They replace all other beats.
+    progress: Called with the bytes that were sent and the bytes in total.
+    """
+    return Call(
+        "create_clip",
+        "POST",
+        "/v1/clips",
+        record(ClipCreated),
+        fields=given(
+            name=name,
+            person=person,
+            task=task,
+            words=words,
+            license=license,
+            source=source,
+            metadata=metadata,
+            path=path,
+            on_conflict=on_conflict,
+            frame_rate=frame_rate,
+            unit=unit,
+            up_axis=up_axis,
+            roles=roles,
+            stack=stack,
+            audio_offset=audio_offset,
+            tempo=tempo,
+            beats=beats,
+        ),
+        files=given(file=file, skeleton=skeleton, audio=audio),
+        progress=progress,
+    )
+
+
+def get_clip(clip_id: str, *, fields: Sequence[str] | None = None) -> Call[Clip]:
+    """One clip."""
+    return Call(
+        "get_clip",
+        "GET",
+        path_of("/v1/clips/{clip_id}", clip_id=clip_id),
+        record(Clip),
+        query=given(fields=fields),
+    )
+
+
+def update_clip(
+    clip_id: str,
+    *,
+    name: str | Unset | None = UNSET,
+    person: str | Unset | None = UNSET,
+    task: str | Unset | None = UNSET,
+    words: Sequence[str] | Unset | None = UNSET,
+    license: str | Unset | None = UNSET,
+    source: str | Unset | None = UNSET,
+    metadata: Mapping[str, bool | int | float | str | None] | Unset | None = UNSET,
+    frame_rate: float | Unset | None = UNSET,
+    up_axis: Literal["x", "y", "z", "-x", "-y", "-z"] | Unset | None = UNSET,
+    stack: str | Unset | None = UNSET,
+    audio_offset: float | Unset | None = UNSET,
+    tempo: float | Unset | None = UNSET,
+    beats: Sequence[float] | Unset | None = UNSET,
+) -> Call[Clip]:
+    """Correct the labels or hints of a clip.
+
+    metadata: Only the sent keys change. null deletes a key; null instead of the object deletes
+        all.
+    frame_rate: The clip is analyzed again. null restores the declared frame rate.
+    up_axis: The axis of the file that points up. The clip is analyzed again. With null, it is
+        found as after an upload.
+    stack: The animation stack of an FBX file. The clip is analyzed again. null restores the
+        longest stack.
+    audio_offset: Time in the motion at which the recording begins, seconds; may be negative. The
+        clip is analyzed again. With null, it is estimated.
+    tempo: Beats per minute. The clip is analyzed again. null deletes the tempo.
+    beats: Seconds. They replace all other beats. The clip is analyzed again. null or an empty
+        list deletes them.
+    """
+    return Call(
+        "update_clip",
+        "PATCH",
+        path_of("/v1/clips/{clip_id}", clip_id=clip_id),
+        record(Clip),
+        json=corrections(
+            name=name,
+            person=person,
+            task=task,
+            words=words,
+            license=license,
+            source=source,
+            metadata=metadata,
+            frame_rate=frame_rate,
+            up_axis=up_axis,
+            stack=stack,
+            audio_offset=audio_offset,
+            tempo=tempo,
+            beats=beats,
+        ),
+    )
+
+
+def delete_clip(clip_id: str) -> Call[None]:
+    """Delete a clip, its file and everything that was computed from it."""
+    return Call("delete_clip", "DELETE", path_of("/v1/clips/{clip_id}", clip_id=clip_id), nothing)
+
+
+def get_file(clip_id: str) -> Call[bytes]:
+    """The original file, as an attachment: a browser must not show foreign content as a page."""
+    return Call(
+        "get_file",
+        "GET",
+        path_of("/v1/clips/{clip_id}/file", clip_id=clip_id),
+        read_bytes,
+        accept="*/*",
+    )
+
+
+def get_audio(clip_id: str) -> Call[bytes]:
+    """The recording that goes with a clip, as an attachment."""
+    return Call(
+        "get_audio",
+        "GET",
+        path_of("/v1/clips/{clip_id}/audio", clip_id=clip_id),
+        read_bytes,
+        accept="*/*",
+    )
+
+
+def delete_audio(clip_id: str) -> Call[Clip]:
+    """Delete the recording that goes with a clip. The clip is analyzed again."""
+    return Call(
+        "delete_audio",
+        "DELETE",
+        path_of("/v1/clips/{clip_id}/audio", clip_id=clip_id),
+        record(Clip),
+    )

@@ -1,0 +1,21 @@
+"""Calls: health. Generated from the OpenAPI description by `make client`."""
+
+from __future__ import annotations
+
+from kinedex.call import Call, record
+from kinedex.types.health import Alive, Ready
+
+
+def livez() -> Call[Alive]:
+    """Answer, even if all threads are busy. Needs no key."""
+    return Call("livez", "GET", "/livez", record(Alive))
+
+
+def readyz() -> Call[Ready]:
+    """Answer 200 while every call can be answered. Needs no key.
+
+    The answer is 503 before the index is loaded, and while the database is damaged, deleted or
+    replaced, the folder of files is missing or replaced, or nothing can be written. `errors`
+    names every problem.
+    """
+    return Call("readyz", "GET", "/readyz", record(Ready))

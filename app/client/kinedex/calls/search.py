@@ -1,0 +1,140 @@
+"""Calls: search. Generated from the OpenAPI description by `make client`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+from kinedex.call import Call, record
+from kinedex.sent import FileInput, Progress, given
+from kinedex.types.bodies import Filter
+from kinedex.types.choices import Method
+from kinedex.types.search import MotionHits, WordHits
+
+
+def search_motion(
+    clip_id: str | None = None,
+    *,
+    fields: Sequence[str] | None = None,
+    file: FileInput | None = None,
+    skeleton: FileInput | None = None,
+    unit: str | None = None,
+    frame_rate: float | None = None,
+    up_axis: Literal["x", "y", "z", "-x", "-y", "-z"] | None = None,
+    roles: str | None = None,
+    stack: str | None = None,
+    start: float | None = None,
+    end: float | None = None,
+    method: Method | None = None,
+    limit: int | None = None,
+    scope: Literal["clips", "windows", "segments"] | None = None,
+    include_self: bool | None = None,
+    filter: Filter | None = None,
+    cursor: str | None = None,
+    segment: int | None = None,
+    progress: Progress | None = None,
+) -> Call[MotionHits]:
+    """Find motions like a stored clip, a part of one, or an uploaded file.
+
+    With scope `windows`, find parts of clips, with their start and end. With scope `segments`,
+    find motions from one keypose to the next.
+
+    file: The query motion, in any format that an upload may have. It is never stored.
+    skeleton: The ASF file that an AMC file needs.
+    unit: m, dm, cm, mm, in, ft, cmu (unit of the CMU files), or meters per unit.
+    frame_rate: It replaces the frame rate that the file declares.
+    up_axis: The axis of the file that points up. Without it, the axis that the file says is
+        used, else the one along which the body stands: then the clip has the warning
+        `up_axis_guessed`.
+    roles: JSON: joint name by role, as in {"hips": "Pelvis"}; a list of two names is for their
+        middle, as in {"hips": ["LHip", "RHip"]}. A body that seems to be an animal is refused as
+        `skeleton_not_human`, with the reasons, unless roles are sent.
+    stack: The name of the animation stack to read, if an FBX file has several; default: the
+        longest. The clip's warning `stack_chosen` lists them.
+    start: Start of the queried part, seconds.
+    end: End of the queried part, seconds.
+    method: Default: fused.
+    limit: Maximum number of items in one answer. Default: 10.
+    scope: clips: whole clips are compared. windows: parts of clips are found, at any time in a
+        clip, by the methods fused, vector and dtw; the query is up to 120 s long. segments:
+        motions from one keypose to the next are compared by their vectors; the query is taken as
+        one segment. Default: clips.
+    include_self: Whether the query clip may be a hit. A file that is stored already counts as
+        its clip. With scope windows and segments: whether parts that overlap the query may be
+        hits. Default: False.
+    segment: With scope segments: the clip's segment of that index is the query.
+    progress: Called with the bytes that were sent and the bytes in total.
+    """
+    return Call(
+        "search_motion",
+        "POST",
+        "/v1/search/motion",
+        record(MotionHits),
+        query=given(fields=fields),
+        json=given(
+            clip_id=clip_id,
+            unit=unit,
+            frame_rate=frame_rate,
+            up_axis=up_axis,
+            roles=roles,
+            stack=stack,
+            start=start,
+            end=end,
+            method=method,
+            limit=limit,
+            scope=scope,
+            include_self=include_self,
+            filter=filter,
+            cursor=cursor,
+            segment=segment,
+        ),
+        fields=given(
+            clip_id=clip_id,
+            unit=unit,
+            frame_rate=frame_rate,
+            up_axis=up_axis,
+            roles=roles,
+            stack=stack,
+            start=start,
+            end=end,
+            method=method,
+            limit=limit,
+            scope=scope,
+            include_self=include_self,
+            filter=filter,
+            cursor=cursor,
+            segment=segment,
+        ),
+        files=given(file=file, skeleton=skeleton),
+        progress=progress,
+    )
+
+
+def search_words(
+    words: Sequence[str],
+    *,
+    fields: Sequence[str] | None = None,
+    mode: Literal["default", "cca"] | None = None,
+    limit: int | None = None,
+    filter: Filter | None = None,
+    cursor: str | None = None,
+) -> Call[WordHits]:
+    """Find motions for words, phrases or sentences. The most probable motion comes first.
+
+    The `score` of a hit is a probability, in both modes.
+
+    words: Words, phrases or sentences. Inflected forms and words of the same meaning are
+        understood. A word with a minus before it (-left) leaves out the clips that carry it.
+    mode: How clips are ranked. default: by a kernel regression from motion features to words.
+        cca: by the angle in Takano's correlated space of motion symbols and words. Default:
+        default.
+    limit: Maximum number of items in one answer. Default: 10.
+    """
+    return Call(
+        "search_words",
+        "POST",
+        "/v1/search/words",
+        record(WordHits),
+        query=given(fields=fields),
+        json=given(words=words, mode=mode, limit=limit, filter=filter, cursor=cursor),
+    )

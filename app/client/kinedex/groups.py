@@ -1,0 +1,151 @@
+"""Groups of methods. Generated from the OpenAPI description by `make client`."""
+
+from __future__ import annotations
+
+from kinedex.calls import clip_views as calls_clip_views
+from kinedex.calls import clips as calls_clips
+from kinedex.calls import export as calls_export
+from kinedex.calls import health as calls_health
+from kinedex.calls import imports as calls_imports
+from kinedex.calls import jobs as calls_jobs
+from kinedex.calls import keyposes as calls_keyposes
+from kinedex.calls import labels as calls_labels
+from kinedex.calls import low_dimensional as calls_low_dimensional
+from kinedex.calls import models as calls_models
+from kinedex.calls import poses as calls_poses
+from kinedex.calls import recognize as calls_recognize
+from kinedex.calls import search as calls_search
+from kinedex.calls import segments as calls_segments
+from kinedex.calls import service as calls_service
+from kinedex.calls import space as calls_space
+from kinedex.calls import status as calls_status
+from kinedex.calls import studies as calls_studies
+from kinedex.calls import suggestions as calls_suggestions
+from kinedex.calls import symbols as calls_symbols
+from kinedex.calls import synthesize as calls_synthesize
+from kinedex.calls import webhooks as calls_webhooks
+from kinedex.methods import CallMethod, Group, ListMethod, SenderType
+from kinedex.types.clips import Clip
+from kinedex.types.jobs import Job, JobFile
+from kinedex.types.labels import Folder, MetadataKey, NamedCount
+from kinedex.types.studies import Pair
+
+
+class Clips(Group[SenderType]):
+    """Clips and everything that can be seen of one."""
+
+    list = ListMethod(calls_clips.list_clips, Clip)
+    upload = CallMethod(calls_clips.create_clip)
+    get = CallMethod(calls_clips.get_clip)
+    update = CallMethod(calls_clips.update_clip)
+    delete = CallMethod(calls_clips.delete_clip)
+    file = CallMethod(calls_clips.get_file)
+    audio = CallMethod(calls_clips.get_audio)
+    delete_audio = CallMethod(calls_clips.delete_audio)
+    motion = CallMethod(calls_clip_views.get_motion)
+    motion_array = CallMethod(calls_clip_views.get_motion_array)
+    descriptor = CallMethod(calls_clip_views.get_descriptor)
+    thumbnail = CallMethod(calls_clip_views.get_thumbnail)
+    keyposes = CallMethod(calls_keyposes.get_keyposes)
+    name_keyposes = CallMethod(calls_keyposes.name_keyposes)
+    forget_named_keyposes = CallMethod(calls_keyposes.forget_named_keyposes)
+    low_dimensional = CallMethod(calls_low_dimensional.get_low_dimensional)
+    low_dimensional_array = CallMethod(calls_low_dimensional.get_low_dimensional_array)
+    animation = CallMethod(calls_low_dimensional.get_animation)
+    export = CallMethod(calls_export.get_export)
+    upload_archive = CallMethod(calls_imports.start_import)
+    symbol_motion = CallMethod(calls_symbols.get_symbol_motion)
+    symbol_motion_array = CallMethod(calls_symbols.get_symbol_motion_array)
+    suggest_words = CallMethod(calls_suggestions.suggest_words)
+    accept_words = CallMethod(calls_suggestions.accept_words)
+    segments = CallMethod(calls_segments.get_segments)
+
+
+class JobsBase(Group[SenderType]):
+    """Jobs: work in the background."""
+
+    list = ListMethod(calls_jobs.list_jobs, Job)
+    get = CallMethod(calls_jobs.get_job)
+    cancel = CallMethod(calls_jobs.cancel_or_delete_job)
+    files = ListMethod(calls_jobs.list_files, JobFile)
+
+
+class Search(Group[SenderType]):
+    """Searches by example, by pose and by words."""
+
+    motion = CallMethod(calls_search.search_motion)
+    words = CallMethod(calls_search.search_words)
+    pose = CallMethod(calls_poses.search_pose)
+    space = CallMethod(calls_space.get_space)
+
+
+class Models(Group[SenderType]):
+    """Models that are fitted on the library."""
+
+    list = CallMethod(calls_models.list_models)
+    update = CallMethod(calls_models.update_model)
+    fit = CallMethod(calls_models.request_fit)
+
+
+class Labels(Group[SenderType]):
+    """Persons, tasks and words of the library."""
+
+    persons = ListMethod(calls_labels.list_persons, NamedCount)
+    forget_person = CallMethod(calls_labels.forget_person)
+    tasks = ListMethod(calls_labels.list_tasks, NamedCount)
+    words = ListMethod(calls_labels.list_words, NamedCount)
+    list_metadata = ListMethod(calls_labels.list_metadata, MetadataKey)
+    list_folders = ListMethod(calls_labels.list_folders, Folder)
+    manifest = CallMethod(calls_labels.get_manifest)
+
+
+class Studies(Group[SenderType]):
+    """Blind studies that compare low-dimensional motions."""
+
+    list_pairs = ListMethod(calls_studies.list_pairs, Pair)
+    draw_pair = CallMethod(calls_studies.draw_pair)
+    pair = CallMethod(calls_studies.get_pair)
+    delete_pair = CallMethod(calls_studies.delete_pair)
+    pair_animation = CallMethod(calls_studies.get_pair_animation)
+    pair_motion = CallMethod(calls_studies.get_pair_motion)
+    pair_motion_array = CallMethod(calls_studies.get_pair_motion_array)
+    vote = CallMethod(calls_studies.vote)
+    tally = CallMethod(calls_studies.get_tally)
+
+
+class Service(Group[SenderType]):
+    """The service itself."""
+
+    status = CallMethod(calls_status.get_status)
+    alive = CallMethod(calls_health.livez)
+    ready = CallMethod(calls_health.readyz)
+    metrics = CallMethod(calls_service.metrics)
+
+
+class Webhooks(Group[SenderType]):
+    """Calls about webhooks."""
+
+    list_webhooks = CallMethod(calls_webhooks.list_webhooks)
+    create_webhook = CallMethod(calls_webhooks.create_webhook)
+    webhook = CallMethod(calls_webhooks.get_webhook)
+    update_webhook = CallMethod(calls_webhooks.update_webhook)
+    delete_webhook = CallMethod(calls_webhooks.delete_webhook)
+    test_webhook = CallMethod(calls_webhooks.test_webhook)
+
+
+class RootBase(Group[SenderType]):
+    """All groups except jobs, and the methods of the client itself."""
+
+    recognize = CallMethod(calls_recognize.recognize)
+    synthesize = CallMethod(calls_synthesize.synthesize)
+    synthesize_array = CallMethod(calls_synthesize.synthesize_array)
+
+    def __init__(self, sender: SenderType) -> None:
+        super().__init__(sender)
+        self.clips = Clips(sender)
+        self.search = Search(sender)
+        self.models = Models(sender)
+        self.labels = Labels(sender)
+        self.studies = Studies(sender)
+        self.service = Service(sender)
+        self.webhooks = Webhooks(sender)

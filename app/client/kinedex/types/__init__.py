@@ -1,0 +1,1 @@
+"""Types of what calls send and answer, generated from the OpenAPI description."""

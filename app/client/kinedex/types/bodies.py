@@ -1,0 +1,39 @@
+"""Objects that calls send. Generated from the OpenAPI description by `make client`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NotRequired, TypedDict
+
+
+class Filter(TypedDict):
+    """Filters of the clips before they are ranked. A clip must pass all given filters.
+
+    `meta.KEY=VALUE` filters by the metadata of the clips, `not_meta.KEY=VALUE` leaves clips with
+    that value out, and `meta.KEY.min=30`, `meta.KEY.max=40` filter by a number.
+
+    not_person: Clips of none of these persons.
+    not_task: Clips of none of these tasks.
+    not_word: Clips with none of these words.
+    not_license: Clips with none of these licenses.
+    not_source: Clips from none of these sources.
+    folder: Clips whose files were in this folder of an import, or below it.
+    not_folder: Clips of none of these folders.
+    min_duration: Seconds.
+    max_duration: Seconds.
+    """
+
+    person: NotRequired[str | Sequence[str] | None]
+    task: NotRequired[str | Sequence[str] | None]
+    word: NotRequired[str | Sequence[str] | None]
+    license: NotRequired[str | Sequence[str] | None]
+    source: NotRequired[str | Sequence[str] | None]
+    not_person: NotRequired[str | Sequence[str] | None]
+    not_task: NotRequired[str | Sequence[str] | None]
+    not_word: NotRequired[str | Sequence[str] | None]
+    not_license: NotRequired[str | Sequence[str] | None]
+    not_source: NotRequired[str | Sequence[str] | None]
+    folder: NotRequired[str | Sequence[str] | None]
+    not_folder: NotRequired[str | Sequence[str] | None]
+    min_duration: NotRequired[float | None]
+    max_duration: NotRequired[float | None]

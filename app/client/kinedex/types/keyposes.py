@@ -1,0 +1,88 @@
+"""Answers: keyposes. Generated from the OpenAPI description by `make client`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from kinedex.records import Array, Record
+
+
+@dataclass(frozen=True, slots=True)
+class Energy(Record):
+    """Energy curves: one value for each frame, in body lengths per second."""
+
+    global_: list[float]
+    local: list[float]
+
+
+@dataclass(frozen=True, slots=True)
+class EnergyNoise(Record):
+    """Energy that the noise of markers causes at rest, in body lengths per second.
+
+    It is already subtracted from both curves.
+    """
+
+    global_: float
+    local: float
+
+
+@dataclass(frozen=True, slots=True)
+class ThresholdSources(Record):
+    """The sources of T1 and T2.
+
+    model_version: Version of the model with the learned thresholds, if they are used.
+    """
+
+    t1: Literal["given", "learned", "default"]
+    t2: Literal["given", "learned", "default"]
+    model_version: int | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Keyposes(Record):
+    """Poses at which a motion comes to rest, near its beats if it has beats.
+
+    frame_rate: Frames per second of `frames` and of the energy curves.
+    tempo: Beats per minute; null if no beat was detected.
+    beats: Seconds.
+    beats_source: The source of the beats. Keyposes are searched only near beats from `given`,
+    `tempo` or `audio`. Beats from `motion` only select a moment within a rest.
+    beats_confidence: Confidence that the beats are not accidental, 0 to 1.
+    times: Seconds.
+    chosen_by: The energy that chose each keypose: relative to the floor (global) or to the
+    waist.
+    roles: Order of the joints in `poses`.
+    poses: (keyposes, 13, 3), meters, Y up.
+    annotated: Times of the keyposes that a person named, seconds; null if there are none.
+    """
+
+    method: str
+    weights: str
+    t1: float
+    t2: float
+    thresholds: ThresholdSources
+    frame_rate: float
+    tempo: float | None
+    beats: list[float]
+    beats_source: Literal["given", "tempo", "audio", "motion", "none"]
+    beats_confidence: float
+    frames: list[int]
+    times: list[float]
+    chosen_by: list[Literal["global", "local"]]
+    roles: list[str]
+    poses: Array
+    energy: Energy
+    energy_unit: str
+    noise: EnergyNoise
+    annotated: list[float] | None
+
+
+@dataclass(frozen=True, slots=True)
+class KeyposesNamed(Record):
+    """The stored keyposes.
+
+    times: Seconds, in rising order.
+    """
+
+    times: list[float]

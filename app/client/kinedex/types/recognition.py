@@ -1,0 +1,57 @@
+"""Answers: recognition. Generated from the OpenAPI description by `make client`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from kinedex.records import Record
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate(Record):
+    """A possible label.
+
+    score: Share of belief in this label; all of them sum to at most 1. Rounded to 4 decimals,
+    because the calibration is not more exact. 0 means very unlikely, not impossible.
+    """
+
+    label: str
+    score: float
+
+
+@dataclass(frozen=True, slots=True)
+class Answer(Record):
+    """The person or the task.
+
+    label: Null if the library does not know the person or the task.
+    score: Share of belief in `label`, or in the first candidate if `label` is null. Rounded to
+    4 decimals, because the calibration is not more exact. 0 means very unlikely, not
+    impossible.
+    """
+
+    label: str | None
+    known: bool
+    score: float
+    candidates: list[Candidate]
+
+
+@dataclass(frozen=True, slots=True)
+class WordScore(Record):
+    """A word that describes the motion.
+
+    score: Probability that a clip with this motion carries the word. It is calibrated on held-
+    out clips, so that scores of different clips and words can be compared. Rounded to 4
+    decimals, because the calibration is not more exact. 0 means very unlikely, not impossible.
+    """
+
+    word: str
+    score: float
+
+
+@dataclass(frozen=True, slots=True)
+class Recognition(Record):
+    """Person, task and words of a motion."""
+
+    person: Answer
+    task: Answer
+    words: list[WordScore]

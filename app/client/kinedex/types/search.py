@@ -1,0 +1,75 @@
+"""Answers: search. Generated from the OpenAPI description by `make client`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from kinedex.records import Page, Record
+from kinedex.types.clips import Clip
+
+
+@dataclass(frozen=True, slots=True)
+class Hit(Record):
+    """One hit of a search.
+
+    score: Higher is closer.
+    start: Start of the found part, seconds from the start of the clip. 0 with scope clips.
+    end: End of the found part, seconds.
+    """
+
+    rank: int
+    score: float
+    distance: float
+    start: float
+    end: float
+    clip: Clip
+
+
+@dataclass(frozen=True, slots=True)
+class MotionHits(Page[Hit]):
+    """A page of a ranking, the nearest first."""
+
+    method: str
+    took_ms: float
+    library_version: int
+    items: list[Hit]
+    next: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class WordHit(Record):
+    """One hit of a search by words.
+
+    score: Probability that the clip carries all requested words. It is calibrated on held-out
+    clips, so that scores of different queries can be compared. If a word is replaced by others
+    because no clip carries it, the most probable of them counts, reduced by the distance
+    between the two meanings. Rounded to 4 decimals, because the calibration is not more exact.
+    0 means very unlikely, not impossible.
+    distance: -ln(score) in mode default; 1 - cosine, 0 to 2, in mode cca.
+    start: Start of the found part, seconds from the start of the clip. 0 with scope clips.
+    end: End of the found part, seconds.
+    """
+
+    rank: int
+    score: float
+    distance: float
+    start: float
+    end: float
+    clip: Clip
+
+
+@dataclass(frozen=True, slots=True)
+class WordHits(Page[WordHit]):
+    """A page of a ranking by words, the most probable first.
+
+    unknown_words: Words that no clip carries.
+    expanded: For each unknown word, the words that were used instead.
+    """
+
+    method: str
+    took_ms: float
+    library_version: int
+    items: list[WordHit]
+    next: str | None
+    unknown_words: list[str]
+    expanded: dict[str, list[str]]

@@ -1,0 +1,43 @@
+"""Answers: space. Generated from the OpenAPI description by `make client`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from kinedex.records import Page, Record
+
+
+@dataclass(frozen=True, slots=True)
+class MapPoint(Record):
+    """A clip on the map.
+
+    path: Path of the file, relative to its import.
+    point: 2 or 3 coordinates.
+    """
+
+    clip_id: str
+    name: str
+    path: str | None
+    person: str | None
+    task: str | None
+    words: list[str]
+    point: list[float]
+
+
+@dataclass(frozen=True, slots=True)
+class SpaceMap(Page[MapPoint]):
+    """Clips as points; `next` is always null.
+
+    variance_kept: Share of the variance of the space that the map shows.
+    total: Number of clips that pass the filter; may be more than `items`.
+    model: Id of the model of the symbol space, else null.
+    """
+
+    space: str
+    dimensions: int
+    variance_kept: float
+    total: int
+    library_version: int
+    model: str | None
+    items: list[MapPoint]
+    next: str | None

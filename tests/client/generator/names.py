@@ -1,0 +1,67 @@
+"""Names of the client's methods. An operation that is not listed gets its group from its tag."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+ROOT = ""
+"""The group of the methods of the client itself."""
+METHODS = {
+    "create_clip": "clips.upload",
+    "delete_audio": "clips.delete_audio",
+    "delete_clip": "clips.delete",
+    "list_clips": "clips.list",
+    "start_import": "clips.upload_archive",
+    "update_clip": "clips.update",
+    "cancel_or_delete_job": "jobs.cancel",
+    "list_files": "jobs.files",
+    "list_jobs": "jobs.list",
+    "search_motion": "search.motion",
+    "search_pose": "search.pose",
+    "search_words": "search.words",
+    "recognize": "recognize",
+    "synthesize": "synthesize",
+    "list_models": "models.list",
+    "request_fit": "models.fit",
+    "update_model": "models.update",
+    "list_persons": "labels.persons",
+    "list_tasks": "labels.tasks",
+    "list_words": "labels.words",
+    "livez": "service.alive",
+    "readyz": "service.ready",
+    "get_status": "service.status",
+}
+GROUPS = {
+    "clips": "Clips and everything that can be seen of one.",
+    "jobs": "Jobs: work in the background.",
+    "search": "Searches by example, by pose and by words.",
+    "models": "Models that are fitted on the library.",
+    "labels": "Persons, tasks and words of the library.",
+    "studies": "Blind studies that compare low-dimensional motions.",
+    "service": "The service itself.",
+}
+SUBJECTS = re.compile(r"^get_(?:clip_|job_)?")
+WHOLE = {"get_clip": "clips.get", "get_job": "jobs.get"}
+
+
+@dataclass(frozen=True)
+class MethodName:
+    """The name of a method and of its group; group: ROOT for a method of the client itself."""
+
+    group: str
+    name: str
+
+
+def method_name(operation: str, tag: str) -> MethodName:
+    """The method of an operation."""
+    path = {**METHODS, **WHOLE}.get(operation)
+    if path is None:
+        path = f"{tag.replace('-', '_')}.{SUBJECTS.sub('', operation)}"
+    group, _, name = path.rpartition(".")
+    return MethodName(group, name)
+
+
+def group_doc(group: str) -> str:
+    """The docstring of a group."""
+    return GROUPS.get(group, f"Calls about {group}.")
