@@ -15,6 +15,7 @@ these holds:
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 
 import numpy as np
 
@@ -33,7 +34,7 @@ less."""
 MOST_FRAMES, FEW_FRAMES = 0.8, 0.05
 """The share of frames in which a body must stand along another axis, and the largest share in which
 it may stand along the usual one."""
-MAX_SAMPLED_FRAMES = 128
+MAX_SAMPLED_FRAMES = 64
 """The most frames, evenly spaced, in which postures are measured."""
 MAX_BELOW_FLOOR, MAX_ABOVE_FLOOR = 0.06, 0.55
 """The lowest joint of a body that lies: statures below the origin, and above it (on a bed)."""
@@ -106,7 +107,7 @@ class _Body:
     """The posture of a body. positions: (frames, joints, 3) in any unit."""
 
     def __init__(self, positions: FloatArray, roles: Mapping[JointRole, int]) -> None:
-        self.joints = np.asarray(positions[:, sorted(set(roles.values()))], dtype=np.float64)
+        self._positions, self._roles = positions, roles
         hips, top = roles.get(_R.HIPS), roles.get(_R.HEAD, roles.get(_R.NECK))
         low = _lower_ends(roles)
         self.is_known = hips is not None and top is not None and bool(low)
@@ -116,9 +117,12 @@ class _Body:
         self.trunk = positions[:, top] - middle
         self.legs = middle - positions[:, low].mean(axis=1)
         self.over_feet = self.trunk + self.legs
-        self.stature = float(np.median(np.linalg.norm(self.trunk, axis=1))) + float(
-            np.median(np.linalg.norm(self.legs, axis=1))
-        )
+
+    @cached_property
+    def stature(self) -> float:
+        """About the length of the body in the unit of the positions."""
+        trunk, legs = (np.linalg.norm(part, axis=1) for part in (self.trunk, self.legs))
+        return float(np.median(trunk) + np.median(legs))
 
     def standing_axis(self) -> str | None:
         """The signed axis along which the body stands in most frames; None if there is none."""
@@ -139,7 +143,8 @@ class _Body:
 
     def is_off_the_floor(self, up_axis: str) -> bool:
         """Whether the body is below the origin, or floats above it, if this axis is up."""
-        heights = self.joints @ direction_of(up_axis)
+        joints = self._positions[:, sorted(set(self._roles.values()))].astype(np.float64)
+        heights = joints @ direction_of(up_axis)
         lowest = float(np.percentile(heights.min(axis=1), 5)) / max(self.stature, 1e-12)
         return not -MAX_BELOW_FLOOR <= lowest <= MAX_ABOVE_FLOOR
 

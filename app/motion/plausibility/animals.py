@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -59,8 +60,11 @@ def refuse_animals(motion: Motion, rest: FloatArray | None) -> None:
 
     rest: (joints, 3) the rest pose in any axes, or None if the file has no rest pose.
     """
-    body = _Body(motion)
-    signs = [*_postures(body), *_proportions(body), *_rest_pose(motion, rest), *_named(motion)]
+    body, named = _Body(motion), list(_named(motion))
+    # Without signs in names, no other signs are enough against an upright trunk.
+    if not named and body.is_upright():
+        return
+    signs = [*_postures(body), *_proportions(body), *_rest_pose(motion, rest), *named]
     if sum(sign.weight for sign in signs) < MIN_WEIGHT:
         return
     reasons = ", ".join(sign.reason for sign in signs if sign.weight > 0)
@@ -87,11 +91,24 @@ class _Body:
             for part in ("shoulder", "elbow")
         )
         self.trunk = self.joints[_R.NECK] - self.joints[_R.HIPS]
-        self.trunk_length = _length(self.trunk)
-        self.rise = self.trunk[:, 1] / np.maximum(np.linalg.norm(self.trunk, axis=1), 1e-9)
-        self.leg_length = self._limb(_R.LEFT_UPPER_LEG, _R.LEFT_KNEE, _R.LEFT_FOOT)
-        self.arm_length = self._limb(_R.LEFT_SHOULDER, _R.LEFT_ELBOW, _R.LEFT_HAND)
-        self.lower_foot = np.minimum(self._height(_R.LEFT_FOOT), self._height(_R.RIGHT_FOOT))
+        lengths = np.linalg.norm(self.trunk, axis=1)
+        self.trunk_length = float(np.median(lengths))
+        self.rise = self.trunk[:, 1] / np.maximum(lengths, 1e-9)
+
+    @cached_property
+    def leg_length(self) -> float:
+        """The length of the left leg in meters."""
+        return self._limb(_R.LEFT_UPPER_LEG, _R.LEFT_KNEE, _R.LEFT_FOOT)
+
+    @cached_property
+    def arm_length(self) -> float:
+        """The length of the left arm in meters."""
+        return self._limb(_R.LEFT_SHOULDER, _R.LEFT_ELBOW, _R.LEFT_HAND)
+
+    @cached_property
+    def lower_foot(self) -> FloatArray:
+        """(frames,) the height of the lower foot in meters."""
+        return np.minimum(self._height(_R.LEFT_FOOT), self._height(_R.RIGHT_FOOT))
 
     def stands_on_hands_too(self) -> bool:
         """Whether the trunk is level in most frames, and a hand below its shoulder is as low as the

@@ -114,12 +114,15 @@ def _frozen_markers(motion: Motion) -> Iterator[Caution]:
     if motion.frames <= least:
         return
     hips = motion.positions[:, motion.roles[_R.HIPS]]
-    still = np.all(motion.positions[1:] == motion.positions[:-1], axis=2)
     above = set(motion.parents.tolist())
-    for joint in np.flatnonzero(still.any(axis=0) & ~still.all(axis=0)).tolist():
-        if motion.parents[joint] >= 0 or joint in above:
+    for joint in np.flatnonzero(motion.parents < 0).tolist():
+        if joint in above:
             continue
-        for start, end in runs(still[:, joint]):
+        path = motion.positions[:, joint]
+        still = np.all(path[1:] == path[:-1], axis=1)
+        if still.all():
+            continue
+        for start, end in runs(still):
             travel = float(np.linalg.norm(hips[end] - hips[start]))
             if end - start + 1 >= least and travel >= MIN_TRAVEL:
                 detail = (

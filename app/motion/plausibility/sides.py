@@ -34,9 +34,9 @@ def side_doubts(motion: Motion, frames: IntArray) -> Iterator[Caution]:
     if _R.NECK not in sampled:
         return
     up = _unit(sampled[_R.NECK] - sampled[_R.HIPS])
-    lines = {part: _left_line(part, sampled, up) for part in ("shoulder", "upper_leg", "knee")}
-    chest = lines["shoulder"]
-    hips = lines["upper_leg"] if lines["upper_leg"] is not None else lines["knee"]
+    chest, hips = (_left_line(part, sampled, up) for part in ("shoulder", "upper_leg"))
+    if hips is None:
+        hips = _left_line("knee", sampled, up)
     if hips is None:
         return
     if chest is not None and float(np.mean(np.sum(chest * hips, axis=1))) < MAX_OPPOSITE:
@@ -87,5 +87,5 @@ def _directions(side: str, sampled: _Points) -> Iterator[FloatArray]:
 
 
 def _unit(vectors: FloatArray) -> FloatArray:
-    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.asarray(vectors / np.maximum(lengths, MIN_LENGTH))
+    lengths = np.sqrt(np.einsum("fc,fc->f", vectors, vectors))
+    return np.asarray(vectors / np.maximum(lengths, MIN_LENGTH)[:, None])
