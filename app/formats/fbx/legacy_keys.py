@@ -82,7 +82,7 @@ class _Keys:
         self.entries: Sequence[Property] = record.properties(13 * MAX_KEYS) if record else ()
         self.location = location
         self.at = 0
-        self.version = int(_first_number(channel.child("KeyVer"), DEFAULT_KEY_VERSION))
+        self.version = _first_number(channel.child("KeyVer"), DEFAULT_KEY_VERSION)
 
     def read(self) -> list[_Key]:
         keys: list[_Key] = []
