@@ -105,13 +105,16 @@ def _long_count(parameters: Parameters) -> int | None:
     declared = parameters.get("POINT:LONG_FRAMES")
     if declared is None or declared.first is None or not 0 < declared.first < 2**31:
         return None
-    # Two 16-bit numbers, or one float.
-    return _joined(declared.values) if len(declared.values) > 1 else int(declared.first)
+    # One float, or two 16-bit numbers.
+    is_joined = len(declared.values) > 1 and np.isfinite(declared.values[1])
+    return _joined(declared.values) if is_joined else int(declared.first)
 
 
 def _count_of_trial(parameters: Parameters) -> int | None:
     start, end = (parameters.get(f"TRIAL:ACTUAL_{name}_FIELD") for name in ("START", "END"))
     if start is None or end is None or min(len(start.values), len(end.values)) < 2:
+        return None
+    if not np.isfinite([*start.values[:2], *end.values[:2]]).all():
         return None
     return _joined(end.values) - _joined(start.values) + 1
 

@@ -59,11 +59,13 @@ def curve_record(channel: Record, location: str) -> Record | None:
     if not keys:
         return None
     data = np.zeros((len(keys), 4), dtype=np.float32)
-    for row, key in zip(data, keys, strict=True):
-        row[:] = key.data()
+    with np.errstate(over="ignore"):  # numbers that are too large become infinite, and are refused
+        values = np.array([key.value for key in keys]).astype(np.float32)
+        for row, key in zip(data, keys, strict=True):
+            row[:] = key.data()
     arrays: dict[str, FloatArray | IntArray] = {
         "KeyTime": np.array([key.time for key in keys]).astype(np.int64),
-        "KeyValueFloat": np.array([key.value for key in keys], dtype=np.float32),
+        "KeyValueFloat": values,
         "KeyAttrFlags": np.array([key.flags for key in keys], dtype=np.int64),
         "KeyAttrDataFloat": data.ravel(),
         "KeyAttrRefCount": np.ones(len(keys), dtype=np.int64),
@@ -82,7 +84,7 @@ class _Keys:
         self.entries: Sequence[Property] = record.properties(13 * MAX_KEYS) if record else ()
         self.location = location
         self.at = 0
-        self.version = int(_first_number(channel.child("KeyVer"), DEFAULT_KEY_VERSION))
+        self.version = _first_number(channel.child("KeyVer"), DEFAULT_KEY_VERSION)
 
     def read(self) -> list[_Key]:
         keys: list[_Key] = []

@@ -94,7 +94,8 @@ class TextRecord:
         if self.name == _BITS and self.version >= MIN_BITS_VERSION:
             return self._integers(words, np.int32).view(np.float32)
         numbers = self._floats(words)
-        return numbers.astype(np.float32) if self.name in (*_FLOATS, _BITS) else numbers
+        with np.errstate(over="ignore"):  # too large numbers become infinite, and are refused
+            return numbers.astype(np.float32) if self.name in (*_FLOATS, _BITS) else numbers
 
     def _integers(self, words: list[bytes], kind: type[np.int64 | np.int32]) -> IntArray:
         try:

@@ -99,11 +99,12 @@ def _split(labels: Sequence[str]) -> list[tuple[str, str]]:
     """The subject and the rest of each label. Qualisys separates them by `_`, others by `:`."""
     split = [subject_and_label(label) for label in labels]
     named = [label for subject, label in split if is_marker(label) and not subject]
-    short = dict(zip(named, without_common_prefix(named), strict=True))
-    if len(named) < MIN_PREFIXED or len(markers_by_place(named)) >= len(
-        markers_by_place(list(short.values()))
-    ):
+    plain = without_common_prefix(named)
+    if len(named) < MIN_PREFIXED or plain == named:
         return split
+    if len(markers_by_place(named)) >= len(markers_by_place(plain)):
+        return split
+    short = dict(zip(named, plain, strict=True))
     return [(subject, short.get(label, label)) for subject, label in split]
 
 

@@ -32,7 +32,7 @@ def readable_stretch(markers: Markers, positions: FloatArray, frame_rate: float)
     markers and their frames if no stretch is long enough.
     """
     known: BoolArray = np.asarray(np.isfinite(positions).all(axis=-1))
-    blocked = _blocked_roles(markers.labels, known)
+    blocked = {} if known.all() else _blocked_roles(markers.labels, known)
     if not blocked:
         return slice(0, len(known))
     every = _longest(known, [marker for hidden in blocked.values() for marker in hidden])

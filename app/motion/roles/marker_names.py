@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from functools import lru_cache
 
 from app.motion.roles.joint_names import side_and_word
 
@@ -157,6 +158,7 @@ def is_marker(label: str) -> bool:
     return not (_UNLABELED.fullmatch(label) or _NO_MARKER.fullmatch(label))
 
 
+@lru_cache(maxsize=4096)
 def place_on_body(label: str) -> str | None:
     """The place on the body, for example "LKNE" or "C7"; None if no marker set has the label."""
     key = re.sub(r"[\W_]", "", _XSENS.sub("", label)).upper().removesuffix("STUDY")

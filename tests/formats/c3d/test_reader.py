@@ -159,7 +159,7 @@ def test_other_points_and_other_subjects_are_left_out() -> None:
 
 def test_the_point_seen_most_often_is_read_if_a_label_occurs_twice() -> None:
     ghost = np.full((len(MARKERS), 1, 3), np.nan)
-    ghost[5:9] = 1e4
+    ghost[5:9] = [1e4, 2e4, 3e4]
     for positions, labels in (
         (np.concatenate([MARKERS, ghost], axis=1), [*LABELS, "LKNE"]),
         (np.concatenate([ghost, MARKERS], axis=1), ["LKNE", *LABELS]),

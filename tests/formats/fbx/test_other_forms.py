@@ -118,6 +118,14 @@ def test_the_error_for_broken_keys_names_the_take(entries: bytes) -> None:
     assert caught.value.places[0].location.startswith("node Takes, byte")
 
 
+@pytest.mark.parametrize("version", [b"1e999", b"nan", b"x", b""])
+def test_a_wrong_version_of_keys_is_read_as_the_usual_one(version: bytes) -> None:
+    content = text_document(OLD, 6100)
+    assert same(
+        read_fbx(content.replace(b"KeyVer: 4005", b"KeyVer: " + version)), read_fbx(content)
+    )
+
+
 def test_takes_and_rates_of_version_6() -> None:
     short = {(0, "Lcl Translation"): {"X": Curve([0, 0.1], [0, 9])}}
     records = legacy_scene(CHAIN, [("step", short), ("walk", curves(SWAY, 24))], frame_rate="24")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import struct
 from typing import Any
 
@@ -23,6 +24,7 @@ from tests.formats.gltf.test_reader import CHAIN, TIMES, chain, turns
 def changed(path: tuple[str | int, ...], value: object) -> bytes:
     """The leg's file with one value of the JSON object replaced."""
     document = chain()
+    document.json = copy.deepcopy(document.json)
     place: Any = document.json
     for step in path[:-1]:
         place = place[step]
@@ -120,6 +122,8 @@ JSON = st.recursive(
 @given(st.data())
 def test_any_value_anywhere_is_read_or_refused(data: st.DataObject) -> None:
     document = chain()
+    # The lists of the example are shared by all tests.
+    document.json = copy.deepcopy(document.json)
     place: Any = document.json
     steps: list[str | int] = []
     while isinstance(place, (dict, list)) and place and len(steps) < 5:
