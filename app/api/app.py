@@ -19,10 +19,12 @@ from app.api.guard.envelope import Envelope
 from app.api.guard.gates import Gates
 from app.api.guard.limits import BodyLimit
 from app.api.guard.methods import KnownMethods
+from app.api.guard.sessions import Sessions
 from app.api.guard.slow_bodies import SlowBodies
 from app.api.loading import Loading
 from app.api.metrics import install_metrics
 from app.api.openapi import describe
+from app.api.pages import install_pages
 from app.api.routes import (
     clip_views,
     clips,
@@ -38,6 +40,7 @@ from app.api.routes import (
     recognize,
     search,
     segments,
+    session,
     space,
     studies,
     suggestions,
@@ -79,6 +82,7 @@ ROUTES = (
     space,
     studies,
     segments,
+    session,
     health,
 )
 
@@ -99,6 +103,7 @@ def create_app(settings: Settings) -> FastAPI:
     )
     app.state.settings = settings
     app.state.library = None
+    app.state.sessions = Sessions()
     app.state.stopping = False
     app.state.start_failure = None
     app.state.gates = Gates.of(settings.request_timeout_s)
@@ -106,6 +111,7 @@ def create_app(settings: Settings) -> FastAPI:
     for module in ROUTES:
         app.include_router(module.router)
     install_docs(app)
+    install_pages(app)
     describe(app, [MotionSearch, Recognize, Synthesize], lambda: example_ids(app.state.library))
     # The last one added is the outermost.
     app.add_middleware(BodyLimit, settings=settings)

@@ -39,9 +39,8 @@ class Caller:
             raise Forbidden(f"This needs a key with the role {role.value}.")
 
 
-def who_calls(lib: Library, headers: Headers) -> Caller:
-    """The caller by the key in the headers of a request. Raises StorageError."""
-    given = _given_key(headers)
+def who_calls(lib: Library, given: str) -> Caller:
+    """The caller by the key that was given, empty for none. Raises StorageError."""
     with lib.store.read() as tx:
         if is_open(lib, tx):
             return Caller(role=None, has_key=bool(given), is_free=True)
@@ -57,7 +56,8 @@ def is_open(lib: Library, tx: Tx) -> bool:
     return local and not keys.is_any(tx)
 
 
-def _given_key(headers: Headers) -> str:
+def given_key(headers: Headers) -> str:
+    """The key in the headers of a request; empty if there is none."""
     scheme, bearer = get_authorization_scheme_param(headers.get("authorization"))
     if scheme.lower() == "bearer" and bearer:
         return bearer

@@ -14,14 +14,17 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.api.failures.handlers import answer_failure
 from app.api.failures.problems import NotReadyYet
-from app.api.guard.callers import Caller, who_calls
-from app.api.guard.own_address import refuse_other_sites
+from app.api.guard.callers import Caller, given_key, who_calls
+from app.api.guard.own_address import refuse_other_pages, refuse_other_sites
 from app.api.guard.paths import path_of
+from app.api.guard.sessions import COOKIE, Sessions
 from app.errors import KinedexError
 from app.services.library.library import Library
 
 PROBES = frozenset({"/livez", "/readyz"})
 """Whoever runs the service asks these, by any name; they hold nothing of the library."""
+SIGN_IN = ("POST", "/v1/session")
+"""The only call whose body is read without a key: the key is in it."""
 WITHOUT_BODY = frozenset({"GET", "HEAD", "OPTIONS"})
 THREADS = 8
 """For looking keys up, so that calls that take long do not hold this up."""
@@ -52,10 +55,19 @@ class Door:
         library: Library | None = scope["app"].state.library
         if library is None:
             raise NotReadyYet
-        headers = Headers(scope=scope)
-        caller = await to_thread.run_sync(who_calls, library, headers, limiter=self._threads)
+        sent = given_key(Headers(scope=scope))
+        key = sent or _key_of_session(scope)
+        caller = await to_thread.run_sync(who_calls, library, key, limiter=self._threads)
         if caller.is_free:
             refuse_other_sites(scope)
-        if scope["method"] not in WITHOUT_BODY:
+        elif key and not sent:
+            refuse_other_pages(scope)
+        call = (scope["method"], path_of(scope))
+        if scope["method"] not in WITHOUT_BODY and call != SIGN_IN:
             caller.require_key()
         return caller
+
+
+def _key_of_session(scope: Scope) -> str:
+    sessions: Sessions = scope["app"].state.sessions
+    return sessions.key_of(Request(scope).cookies.get(COOKIE, ""))

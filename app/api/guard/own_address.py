@@ -18,6 +18,7 @@ import re
 from starlette.datastructures import Headers
 from starlette.types import Scope
 
+from app.api.guard.page_paths import is_page
 from app.api.guard.paths import path_of
 from app.errors import Forbidden
 
@@ -27,8 +28,7 @@ _HOST = re.compile(
 LARGEST_PORT = 65_535
 OWN_SITES = frozenset({"same-origin", "none"})
 """`none` is the user's own doing: an address that was typed, a bookmark."""
-PAGES = frozenset({"", "/docs"})
-"""What a link on another site may open."""
+CHANGE_NOTHING = frozenset({"GET", "HEAD", "OPTIONS"})
 
 
 def refuse_other_sites(scope: Scope) -> None:
@@ -41,6 +41,21 @@ def refuse_other_sites(scope: Scope) -> None:
     sites = headers.getlist("sec-fetch-site")
     if not OWN_SITES.issuperset(sites) and not _opens_a_page(scope, headers):
         raise Forbidden("Without API keys, calls from another site are not answered.")
+
+
+def refuse_other_pages(scope: Scope) -> None:
+    """Raises Forbidden unless a page of the address that was called, or the user, calls.
+
+    For calls that a cookie allows. The host may have any name here, and a proxy may have taken
+    TLS off, so that schemes are not compared.
+    """
+    headers = Headers(scope=scope)
+    sites = headers.getlist("sec-fetch-site")
+    hosts = [origin.partition("://")[2].lower() for origin in headers.getlist("origin")]
+    own = headers.get("host", "").lower()
+    says = bool(sites or hosts) or scope["method"] in CHANGE_NOTHING
+    if not says or not OWN_SITES.issuperset(sites) or (not sites and set(hosts) - {own}):
+        raise Forbidden("Who is signed in can only be called for by the pages of this address.")
 
 
 def _own_host(headers: Headers) -> str:
@@ -57,7 +72,7 @@ def _own_host(headers: Headers) -> str:
 def _opens_a_page(scope: Scope, headers: Headers) -> bool:
     return (
         scope["method"] in {"GET", "HEAD"}
-        and path_of(scope) in PAGES
+        and is_page(path_of(scope))
         and headers.getlist("sec-fetch-mode") == ["navigate"]
         and headers.getlist("sec-fetch-dest") == ["document"]
     )
