@@ -71,6 +71,24 @@ def test_the_theme_that_is_chosen_stays(page: Page) -> None:
     assert page.evaluate(background) == dark
 
 
+def test_a_service_that_is_away_is_said_and_found_again(
+    browser: Browser, demo_service: Live
+) -> None:
+    with opened(browser, demo_service.url, expected=("Failed to load", "/v1/", "/livez")) as page:
+        page.goto("/")
+        expect(page.locator("h1")).to_be_visible()
+        page.route("**/v1/**", lambda route: route.abort())
+        page.route("**/livez", lambda route: route.abort())
+        page.get_by_role("navigation").get_by_role("link", name="Jobs").click()
+        page.get_by_role("navigation").get_by_role("link", name="Gallery", exact=True).click()
+        page.get_by_role("searchbox").fill("kick")
+        expect(page.get_by_text("Kinedex does not answer.")).to_be_visible()
+        expect(page.get_by_role("button", name="Try now")).to_be_visible()
+        page.unroute_all()
+        expect(page.get_by_text("Kinedex does not answer.")).to_be_hidden()
+        expect(page.get_by_role("searchbox")).to_have_value("kick")
+
+
 def test_where_keys_are_asked_for_a_key_signs_in(browser: Browser, tmp_path: Path) -> None:
     with serve(tmp_path / "data") as live:
         settings = load_settings(data_dir=live.data_dir)
