@@ -15,6 +15,8 @@ export default defineConfig({
     assetsInlineLimit: 0,
     modulePreload: { polyfill: false },
     manifest: "manifest.json",
+    // three.js, which is loaded with the player.
+    chunkSizeWarningLimit: 600,
   },
   test: { include: ["src/**/*.test.ts"], environment: "node" },
 });

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Literal
 
-from playwright.sync_api import Browser, Page, Playwright, Request
+from playwright.sync_api import Browser, Page, Playwright, Request, expect
 
 from app.api.pages import DIST
 
@@ -22,6 +22,11 @@ SOFTWARE_GL = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--igno
 FLAGS = ["--no-sandbox", "--disable-dev-shm-usage", *SOFTWARE_GL]
 WIDE = (1280, 800)
 Scheme = Literal["light", "dark"]
+LOOKS: list[tuple[Scheme, tuple[int, int]]] = [("light", WIDE), ("dark", (390, 844))]
+"""Each theme, and each kind of layout: a page that is sound in both of these is sound."""
+WAIT_MS = 30_000.0
+"""For a state that a page gets to; how fast is no matter of these tests."""
+expect.set_options(timeout=WAIT_MS)
 
 
 def why_not() -> str | None:
@@ -62,7 +67,7 @@ def opened(
         **options,
     )
     page = context.new_page()
-    page.set_default_timeout(20_000)
+    page.set_default_timeout(WAIT_MS)
     errors: list[str] = []
     page.on("console", lambda said: errors.append(said.text) if said.type == "error" else None)
     page.on("pageerror", lambda error: errors.append(str(error)))

@@ -15,7 +15,7 @@ from app.store.key_role import KeyRole
 from app.store.store import Store
 from tests.live import Live, serve
 from tests.web.accessibility import serious_faults
-from tests.web.browser import Scheme, opened
+from tests.web.browser import LOOKS, Scheme, opened
 
 NAMED = ["", *(name for name in PAGE_NAMES if name != "clips")]
 
@@ -38,16 +38,15 @@ def test_every_page_opens_by_its_address_and_from_the_navigation(page: Page) -> 
     expect(page.locator("h1")).to_have_text(title or "")
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize(("scheme", "size"), LOOKS)
 def test_the_shell_has_no_serious_fault(
-    browser: Browser, demo_service: Live, scheme: Scheme
+    browser: Browser, demo_service: Live, scheme: Scheme, size: tuple[int, int]
 ) -> None:
-    for size in ((390, 844), (1024, 768)):
-        with opened(browser, demo_service.url, size=size, scheme=scheme) as page:
-            page.goto("/models")
-            expect(page.locator("h1")).to_be_visible()
-            assert serious_faults(page) == []
-            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    with opened(browser, demo_service.url, size=size, scheme=scheme) as page:
+        page.goto("/models")
+        expect(page.locator("h1")).to_be_visible()
+        assert serious_faults(page) == []
+        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
 
 
 def test_a_keyboard_skips_the_navigation(page: Page) -> None:

@@ -1,5 +1,5 @@
 /** Calls of the API, with the types of its own description. */
-import createClient, { type FetchResponse, type Middleware } from "openapi-fetch";
+import createClient, { type Middleware } from "openapi-fetch";
 import { root } from "$/core/root";
 import { Away, problemOf } from "./problem";
 import type { components, paths } from "./schema";
@@ -47,15 +47,20 @@ const noticing: Middleware = {
 };
 api.use(noticing);
 
-/** The data of a call. Throws ApiProblem, Away, AbortError. */
-export async function ask<
-  T extends Record<string | number, unknown>,
-  O,
-  M extends `${string}/${string}`,
->(call: Promise<FetchResponse<T, O, M>>): Promise<NonNullable<FetchResponse<T, O, M>["data"]>> {
+interface Answer<D> {
+  data?: D;
+  error?: unknown;
+  response: Response;
+}
+
+/**
+ * The data of a call that is answered with JSON; `askFor` reads other forms. Throws ApiProblem,
+ * Away, AbortError.
+ */
+export async function ask<D>(call: Promise<Answer<D>>): Promise<Exclude<NonNullable<D>, string>> {
   const { data, error, response } = await call;
   if (!response.ok) throw problemOf(error, response.status);
-  return data as NonNullable<FetchResponse<T, O, M>["data"]>;
+  return data as Exclude<NonNullable<D>, string>;
 }
 
 /** Bytes or text from an address that the typed client does not read. Throws as `ask`. */
