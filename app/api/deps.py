@@ -2,8 +2,8 @@
 
 Roles: `read` for everything that only reads (searches and recognition too), `write` for
 storing, changing and fitting, `admin` for all. While no key exists and the service listens
-on loopback only, every call is open. `/livez`, `/readyz`, `/docs` and `/openapi.json` never
-need a key, since they tell nothing of the library; `/metrics` needs `read`.
+on loopback only, every call is open. Pages, `/livez`, `/readyz`, `/v1/session` and
+`/openapi.json` never need a key, since they tell nothing of the library; `/metrics` needs `read`.
 """
 
 from __future__ import annotations
