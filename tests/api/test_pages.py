@@ -76,7 +76,7 @@ def test_a_page_is_asked_for_again_and_its_files_are_kept(idle: httpx2.Client) -
 def test_files_come_compressed_as_the_client_takes_them(
     idle: httpx2.Client, taken: str, sent: str | None
 ) -> None:
-    (script,) = [name for name in _names(idle.get("/").text) if name.endswith(".js")]
+    script = next(name for name in _names(idle.get("/").text) if name.endswith(".js"))
     with idle.stream("GET", f"/assets/{script}", headers={"Accept-Encoding": taken}) as answer:
         raw = b"".join(answer.iter_raw())
     assert answer.headers.get("content-encoding") == sent

@@ -205,6 +205,6 @@ def test_clips_are_handed_in_labeled_and_deleted(
         tray.get_by_role("button", name="Delete").click()
         expect(cards(page)).to_have_count(2)
         page.get_by_role("button", name="Dismiss").last.click()
-        wait_until(lambda: len(clips_of(changed)) == 2, 20)
+        wait_until(lambda: len(clips_of(changed)) == 2, 60)
         page.reload()
         expect(cards(page)).to_have_count(2)
