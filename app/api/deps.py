@@ -2,8 +2,8 @@
 
 Roles: `read` for calls that only read (searches and recognition too), `write` for calls that
 store, change or fit something, `admin` for all calls. Calls need no key while no key exists and
-the service listens on loopback only. `/livez`, `/readyz`, `/docs` and `/openapi.json` never need
-a key, because they show nothing of the library. `/metrics` needs `read`.
+the service listens on loopback only. Pages, `/livez`, `/readyz`, `/docs`, `/v1/session` and
+`/openapi.json` never need a key, because they show nothing of the library. `/metrics` needs `read`.
 """
 
 from __future__ import annotations

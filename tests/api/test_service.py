@@ -26,12 +26,6 @@ def test_health(idle: httpx2.Client) -> None:
     assert idle.get("/readyz").json()["status"] == "ready"
 
 
-def test_root_leads_to_the_docs(idle: httpx2.Client) -> None:
-    answer = idle.get("/")
-    assert answer.status_code == 307
-    assert answer.headers["location"] == "/docs"
-
-
 def test_docs_load_nothing_from_elsewhere(idle: httpx2.Client) -> None:
     page = idle.get("/docs")
     policy = page.headers["content-security-policy"]
@@ -49,7 +43,9 @@ def test_metrics_count_requests(idle: httpx2.Client) -> None:
     assert 'handler="/v1/clips/{clip_id}"' in idle.get("/metrics").text
 
 
-@pytest.mark.parametrize("path", ["/livez", "/v1/clips", "/v1/nowhere", "/docs", "/openapi.json"])
+@pytest.mark.parametrize(
+    "path", ["/", "/livez", "/v1/clips", "/v1/nowhere", "/docs", "/openapi.json"]
+)
 def test_headers_of_every_answer(idle: httpx2.Client, path: str) -> None:
     headers = idle.get(path).headers
     assert headers["x-content-type-options"] == "nosniff"

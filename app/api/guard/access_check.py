@@ -14,12 +14,15 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.api.failures.handlers import answer_failure
 from app.api.failures.problems import NotReadyYet
-from app.api.guard.callers import find_caller
-from app.api.guard.own_address import refuse_other_sites
+from app.api.guard.callers import find_caller, given_key
+from app.api.guard.own_address import refuse_other_pages, refuse_other_sites
 from app.api.guard.paths import path_of
+from app.api.guard.sessions import COOKIE, Sessions
 from app.errors import KinedexError
 from app.services.library.library import Library
 
+SIGN_IN = ("POST", "/v1/session")
+"""The only call whose body is read without a key: the key is in it."""
 PROBES = frozenset({"/livez", "/readyz"})
 """Monitoring calls these paths under any host name. They show nothing of the library."""
 WITHOUT_BODY = frozenset({"GET", "HEAD", "OPTIONS"})
@@ -52,11 +55,20 @@ class AccessCheck:
         library: Library | None = scope["app"].state.library
         if library is None:
             raise NotReadyYet
-        headers = Headers(scope=scope)
-        caller = await to_thread.run_sync(find_caller, library, headers, limiter=self._threads)
+        sent = given_key(Headers(scope=scope))
+        key = sent or _key_of_session(scope)
+        caller = await to_thread.run_sync(find_caller, library, key, limiter=self._threads)
         # For the log, which also names the key of a call that is refused.
         scope.setdefault("state", {})["caller"] = caller
         if caller.is_free:
             refuse_other_sites(scope, library.settings.cors_origins)
-        if scope["method"] not in WITHOUT_BODY:
+        elif key and not sent:
+            refuse_other_pages(scope)
+        call = (scope["method"], path_of(scope))
+        if scope["method"] not in WITHOUT_BODY and call != SIGN_IN:
             caller.require_key()
+
+
+def _key_of_session(scope: Scope) -> str:
+    sessions: Sessions = scope["app"].state.sessions
+    return sessions.key_of(Request(scope).cookies.get(COOKIE, ""))

@@ -42,9 +42,8 @@ class Caller:
             raise Forbidden(f"This needs a key with the role {role.value}.")
 
 
-def find_caller(lib: Library, headers: Headers) -> Caller:
-    """Find the caller by the key in the headers of a request. Raises StorageError."""
-    given = _given_key(headers)
+def find_caller(lib: Library, given: str) -> Caller:
+    """Find the caller by a key; `given` is empty without a key. Raises StorageError."""
     with lib.store.read() as tx:
         if is_open(lib, tx):
             return Caller(role=None, has_key=bool(given), is_free=True)
@@ -62,7 +61,8 @@ def is_open(lib: Library, tx: Tx) -> bool:
     return local and not keys.is_any(tx)
 
 
-def _given_key(headers: Headers) -> str:
+def given_key(headers: Headers) -> str:
+    """The key in the headers of a request; empty if there is none."""
     scheme, bearer = get_authorization_scheme_param(headers.get("authorization"))
     if scheme.lower() == "bearer" and bearer:
         return bearer

@@ -19,6 +19,7 @@ from collections.abc import Collection
 from starlette.datastructures import Headers
 from starlette.types import Scope
 
+from app.api.guard.page_paths import is_page
 from app.api.guard.paths import path_of
 from app.errors import Forbidden
 
@@ -28,8 +29,8 @@ _HOST = re.compile(
 MAX_PORT = 65_535
 OWN_SITES = frozenset({"same-origin", "none"})
 """The value is `none` if the user typed the address or opened a bookmark."""
-PAGES = frozenset({"", "/docs"})
-"""Paths that a link on another site may open."""
+CHANGE_NOTHING = frozenset({"GET", "HEAD", "OPTIONS"})
+"""Methods that change nothing."""
 
 
 def refuse_other_sites(scope: Scope, allowed: Collection[str] = ()) -> None:
@@ -50,6 +51,21 @@ def refuse_other_sites(scope: Scope, allowed: Collection[str] = ()) -> None:
         raise Forbidden("Without API keys, calls from another site are not answered.")
 
 
+def refuse_other_pages(scope: Scope) -> None:
+    """Raises Forbidden unless a page of the address that was called, or the user, calls.
+
+    For calls that a cookie allows. The host may have any name here, and a proxy may have taken
+    TLS off, so that schemes are not compared.
+    """
+    headers = Headers(scope=scope)
+    sites = headers.getlist("sec-fetch-site")
+    hosts = [origin.partition("://")[2].lower() for origin in headers.getlist("origin")]
+    own = headers.get("host", "").lower()
+    says = bool(sites or hosts) or scope["method"] in CHANGE_NOTHING
+    if not says or not OWN_SITES.issuperset(sites) or (not sites and set(hosts) - {own}):
+        raise Forbidden("With a cookie, only the pages of this address may call.")
+
+
 def _own_host(headers: Headers) -> str:
     hosts = headers.getlist("host")
     match = _HOST.fullmatch(hosts[0]) if len(hosts) == 1 else None
@@ -64,7 +80,7 @@ def _own_host(headers: Headers) -> str:
 def _opens_a_page(scope: Scope, headers: Headers) -> bool:
     return (
         scope["method"] in {"GET", "HEAD"}
-        and path_of(scope) in PAGES
+        and is_page(path_of(scope))
         and headers.getlist("sec-fetch-mode") == ["navigate"]
         and headers.getlist("sec-fetch-dest") == ["document"]
     )

@@ -1,9 +1,8 @@
-"""Health of the service: alive, ready. `/` redirects to the documentation."""
+"""Health of the service: alive, ready."""
 
 from __future__ import annotations
 
-from fastapi import APIRouter, Request
-from fastapi.responses import RedirectResponse
+from fastapi import APIRouter
 
 from app.api.deps import Lib
 from app.api.failures.problems import NotReadyYet, Unhealthy
@@ -15,12 +14,6 @@ from app.services.library.library import Library
 router = APIRouter(tags=["service"])
 
 _threads = OwnThreads(2)
-
-
-@router.get("/", include_in_schema=False, dependencies=[at_once])
-async def root(request: Request) -> RedirectResponse:
-    """Redirect to the documentation."""
-    return RedirectResponse(str(request.scope.get("root_path", "")).rstrip("/") + "/docs")
 
 
 @router.get("/livez", dependencies=[at_once])

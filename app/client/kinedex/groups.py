@@ -17,6 +17,7 @@ from kinedex.calls import recognize as calls_recognize
 from kinedex.calls import search as calls_search
 from kinedex.calls import segments as calls_segments
 from kinedex.calls import service as calls_service
+from kinedex.calls import session as calls_session
 from kinedex.calls import space as calls_space
 from kinedex.calls import status as calls_status
 from kinedex.calls import studies as calls_studies
@@ -117,6 +118,9 @@ class Service(Group[SenderType]):
     """The service itself."""
 
     status = CallMethod(calls_status.get_status)
+    session = CallMethod(calls_session.get_session)
+    sign_in = CallMethod(calls_session.sign_in)
+    sign_out = CallMethod(calls_session.sign_out)
     alive = CallMethod(calls_health.livez)
     ready = CallMethod(calls_health.readyz)
     metrics = CallMethod(calls_service.metrics)

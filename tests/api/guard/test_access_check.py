@@ -20,7 +20,7 @@ from tests.api.test_service import _make_keys
 from tests.live import Live, serve
 
 PATHS = ["/v1/clips", "/docs", "/openapi.json", "/metrics", "/static-offline-docs/swagger-ui.css"]
-PATHS += ["/", "/v1/nowhere"]
+PATHS += ["/", "/clips/clip_1", "/v1/nowhere"]
 OWN_NAMES = ["localhost", "127.0.0.1", "[::1]", "LocalHost"]
 STRANGE_HOSTS = [
     *["", "[", "[::1", "::1", "localhost@evil.example", "evil@localhost", "localhost.", "127.1"],
@@ -85,7 +85,7 @@ def test_an_origin_must_be_the_called_address(idle_service: Live, path: str, met
         (("cross-site", "navigate", "iframe"), []),
         (("same-site", "cors", "empty"), []),
         (("odd", "navigate", "empty"), []),
-        (("cross-site", "navigate", "document"), ["/", "/docs"]),
+        (("cross-site", "navigate", "document"), ["/", "/clips/clip_1", "/docs"]),
         (("same-origin", "cors", "empty"), PATHS),
         (("none", "navigate", "document"), PATHS),
     ],

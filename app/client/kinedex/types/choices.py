@@ -73,6 +73,9 @@ JointRole: TypeAlias = Literal[
 ]
 
 
+KeyRole: TypeAlias = Literal["read", "write", "admin"]
+
+
 MatchesPerClip: TypeAlias = Literal["best", "all"]
 
 

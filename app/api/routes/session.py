@@ -1,0 +1,57 @@
+"""Sign in with a browser: the key is exchanged for a cookie that no script can read."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Depends, Request, Response
+
+from app.api.bodies import require_json
+from app.api.deps import Lib
+from app.api.guard.admission import at_once, quick
+from app.api.guard.callers import Caller, find_caller
+from app.api.guard.own_address import refuse_other_pages
+from app.api.guard.sessions import COOKIE, Sessions
+from app.api.openapi import refusals
+from app.api.schemas.session import Session, SignIn
+
+router = APIRouter(prefix="/v1/session", tags=["service"])
+
+
+@router.get("", dependencies=[at_once], responses=refusals())
+async def get_session(request: Request) -> Session:
+    """Whether keys are needed here, and what the caller's key allows. Needs no key."""
+    return _session(request.state.caller)
+
+
+@router.post("", dependencies=[Depends(require_json), quick], responses=refusals(400, 413, 415))
+def sign_in(request: Request, lib: Lib, sent: SignIn, response: Response) -> Session:
+    """Sign in: the answer sets a cookie that stands for the key until it is signed out, the
+    service restarts, or 12 hours pass without a call. Only pages of this service can use it."""
+    refuse_other_pages(request.scope)
+    caller = find_caller(lib, sent.key)
+    caller.require_key()
+    sessions: Sessions = request.app.state.sessions
+    response.set_cookie(
+        COOKIE,
+        sessions.begin(sent.key),
+        path=_home(request),
+        secure=request.url.scheme == "https",
+        httponly=True,
+        samesite="strict",
+    )
+    return _session(caller)
+
+
+@router.delete("", status_code=204, dependencies=[at_once], responses=refusals())
+async def sign_out(request: Request, response: Response) -> None:
+    """Sign out: the cookie is removed, and stands for nothing any more."""
+    sessions: Sessions = request.app.state.sessions
+    sessions.end(request.cookies.get(COOKIE, ""))
+    response.delete_cookie(COOKIE, path=_home(request), httponly=True, samesite="strict")
+
+
+def _session(caller: Caller) -> Session:
+    return Session(keys_needed=not caller.is_free, role=caller.role)
+
+
+def _home(request: Request) -> str:
+    return str(request.scope.get("root_path", "")).rstrip("/") or "/"

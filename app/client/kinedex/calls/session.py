@@ -1,0 +1,26 @@
+"""Calls: session. Generated from the OpenAPI description by `make client`."""
+
+from __future__ import annotations
+
+from kinedex.call import Call, nothing, record
+from kinedex.sent import given
+from kinedex.types.session import Session
+
+
+def get_session() -> Call[Session]:
+    """Whether keys are needed here, and what the caller's key allows. Needs no key."""
+    return Call("get_session", "GET", "/v1/session", record(Session))
+
+
+def sign_in(key: str) -> Call[Session]:
+    """Sign in: the answer sets a cookie that stands for the key until it is signed out, the service
+    restarts, or 12 hours pass without a call. Only pages of this service can use it.
+
+    key: An API key.
+    """
+    return Call("sign_in", "POST", "/v1/session", record(Session), json=given(key=key))
+
+
+def sign_out() -> Call[None]:
+    """Sign out: the cookie is removed, and stands for nothing any more."""
+    return Call("sign_out", "DELETE", "/v1/session", nothing)

@@ -1,0 +1,116 @@
+/**
+ * Files on their way into the library. However many are handed in, they go as one ZIP to one
+ * import: its one job is followed by one connection, skeletons find their motions, and a manifest
+ * is read.
+ */
+import { api, ask, type Schemas } from "$/api/client";
+import { problemOf } from "$/api/problem";
+import { server } from "$/api/server.svelte";
+import { root } from "$/core/root";
+import type { Found } from "./collect";
+
+export type JobFile = Schemas["JobFile"];
+type Job = Schemas["Job"];
+
+const MAX_LISTED = 1000;
+
+export class Upload {
+  readonly name: string;
+  readonly count: number;
+  phase: "packing" | "sending" | "analyzing" | "done" | "failed" = $state("packing");
+  /** Share of the phase that is done, 0 to 1. */
+  progress = $state(0);
+  job: Job | null = $state.raw(null);
+  files: readonly JobFile[] = $state.raw([]);
+  failure: unknown = $state.raw();
+  readonly isOver = $derived(this.phase === "done" || this.phase === "failed");
+  #isListing = false;
+  readonly #onchange: () => void;
+
+  /** onchange: called when clips have come or changed. */
+  constructor(found: readonly Found[], onchange: () => void) {
+    this.count = found.length;
+    this.name = found.length === 1 && found[0] ? found[0].file.name : `${found.length} files`;
+    this.#onchange = onchange;
+    void this.#run(found);
+  }
+
+  async #run(found: readonly Found[]): Promise<void> {
+    try {
+      const archive = await packed(found);
+      this.phase = "sending";
+      this.job = await sent(archive, (share) => (this.progress = share));
+      this.phase = "analyzing";
+      this.progress = 0;
+      this.job = await this.#followed(this.job.id);
+      await this.#list(this.job.id);
+      this.failure = this.job.error ? problemOf(this.job.error, 0) : undefined;
+      this.phase = this.job.state === "succeeded" ? "done" : "failed";
+    } catch (failure) {
+      this.failure = failure;
+      this.phase = "failed";
+    }
+    this.#onchange();
+  }
+
+  /** The job when it has ended; meanwhile its progress and its files are shown. */
+  #followed(id: string): Promise<Job> {
+    const events = new EventSource(`${root}/v1/jobs/${id}/events`);
+    return new Promise((ended) => {
+      events.addEventListener("progress", (event) => {
+        const job = JSON.parse(event.data as string) as Job;
+        this.job = job;
+        this.progress = job.progress;
+        void this.#list(id);
+        this.#onchange();
+      });
+      events.addEventListener("done", (event) => {
+        events.close();
+        ended(JSON.parse(event.data as string) as Job);
+      });
+      // The browser opens the stream again by itself; meanwhile we look for the service.
+      events.addEventListener("error", () => server.lost());
+      events.addEventListener("open", () => server.found());
+    });
+  }
+
+  async #list(id: string): Promise<void> {
+    if (this.#isListing) return;
+    this.#isListing = true;
+    try {
+      const params = { path: { job_id: id }, query: { limit: MAX_LISTED } };
+      this.files = (await ask(api.GET("/v1/jobs/{job_id}/files", { params }))).items;
+    } finally {
+      this.#isListing = false;
+    }
+  }
+}
+
+async function packed(found: readonly Found[]): Promise<Blob> {
+  const only = found.length === 1 ? found[0] : undefined;
+  if (only && /\.zip$/i.test(only.path)) return only.file;
+  const { downloadZip } = await import("client-zip");
+  return downloadZip(found.map(({ path, file }) => ({ name: path, input: file }))).blob();
+}
+
+/** XMLHttpRequest, since fetch does not say how much it has sent. */
+function sent(archive: Blob, onprogress: (share: number) => void): Promise<Job> {
+  return new Promise((take, fail) => {
+    const request = new XMLHttpRequest();
+    request.responseType = "json";
+    request.upload.onprogress = ({ loaded, total }) => onprogress(loaded / total);
+    request.onload = () => {
+      const answer = request.response as { job: Job } | null;
+      if (request.status < 300 && answer) take(answer.job);
+      else fail(problemOf(answer, request.status));
+    };
+    request.onerror = () => {
+      server.lost();
+      fail(new Error("The connection broke while the files were sent. Send them again."));
+    };
+    const form = new FormData();
+    form.append("archive", archive, "upload.zip");
+    request.open("POST", `${root}/v1/imports`);
+    request.send(form);
+  });
+}

@@ -1,0 +1,206 @@
+/** The scene of the player: bodies on a floor, light, and a camera that turns around them. */
+import {
+  Color,
+  DirectionalLight,
+  HemisphereLight,
+  MathUtils,
+  PerspectiveCamera,
+  Scene,
+  Spherical,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { Floor } from "./floor";
+import { Body, type BodyColors, type BodyOptions, type BodySource } from "./body";
+import { HOME, type Camera } from "./view";
+
+export interface StageColors {
+  readonly floor: string;
+  readonly grid: string;
+  readonly bodies: readonly BodyColors[];
+}
+
+export interface Shown extends BodyOptions {
+  /** Seconds of each body. */
+  readonly times: readonly number[];
+  readonly follow: boolean;
+}
+
+/** A point of a body, in pixels of the canvas. */
+export interface Place {
+  readonly name: string;
+  readonly x: number;
+  readonly y: number;
+}
+
+export interface StageEvents {
+  /** The reader has moved the camera. */
+  readonly onmove: (camera: Camera) => void;
+  /** A picture was drawn. */
+  readonly ondraw: () => void;
+}
+
+/** Software draws each pixel by itself: more of them than this cost frames. */
+const MAX_PIXEL_RATIO = 1.5;
+const HIP_HEIGHT = 0.9;
+const FIELD_DEGREES = 40;
+/** Meters between bodies side by side, and beside the outer ones. */
+const APART = 1.4;
+const ROOM = 1.5;
+/** Meters over a head. */
+const OVER_HEAD = 0.22;
+
+export class Stage {
+  readonly #renderer: WebGLRenderer;
+  readonly #scene = new Scene();
+  readonly #camera = new PerspectiveCamera(FIELD_DEGREES, 1, 0.05, 100);
+  readonly #controls: OrbitControls;
+  readonly #told: StageEvents;
+  readonly #floor = new Floor();
+  #bodies: readonly Body[] = [];
+  #colors: StageColors;
+  #request = 0;
+
+  /** Throws without WebGL. */
+  constructor(canvas: HTMLCanvasElement, colors: StageColors, told: StageEvents) {
+    this.#renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "low-power" });
+    this.#renderer.setPixelRatio(Math.min(devicePixelRatio, MAX_PIXEL_RATIO));
+    this.#told = told;
+    this.#colors = colors;
+    const sun = new DirectionalLight(0xffffff, 1.6);
+    sun.position.set(2, 5, 3);
+    this.#scene.add(new HemisphereLight(0xffffff, 0xb8b2a6, 2), sun, this.#floor.lines);
+    this.#controls = new OrbitControls(this.#camera, canvas);
+    this.#controls.target.set(0, HIP_HEIGHT, 0);
+    this.#controls.minDistance = 0.5;
+    this.#controls.maxDistance = 40;
+    this.#controls.addEventListener("change", () => this.draw());
+    this.#controls.addEventListener("end", () => this.#told.onmove(this.camera));
+    this.color(colors);
+  }
+
+  get camera(): Camera {
+    const { theta, phi, radius } = new Spherical().setFromVector3(
+      this.#camera.position.clone().sub(this.#controls.target),
+    );
+    const [azimuth, polar] = [MathUtils.radToDeg(theta), MathUtils.radToDeg(phi)];
+    return { azimuth, polar, distance: radius };
+  }
+
+  set camera({ azimuth, polar, distance }: Camera) {
+    const from = new Vector3().setFromSphericalCoords(
+      distance,
+      MathUtils.degToRad(polar),
+      MathUtils.degToRad(azimuth),
+    );
+    this.#camera.position.copy(this.#controls.target).add(from);
+    this.#controls.update();
+    this.draw();
+  }
+
+  /** The camera at first: all bodies are seen, side by side. */
+  get home(): Camera {
+    const wide = 2 * Math.tan(MathUtils.degToRad(FIELD_DEGREES / 2)) * this.#camera.aspect;
+    const needed = (APART * (this.#bodies.length - 1) + ROOM) / wide;
+    return { ...HOME, distance: Math.max(HOME.distance, needed) };
+  }
+
+  color(colors: StageColors): void {
+    this.#colors = colors;
+    this.#scene.background = new Color(colors.floor);
+    this.#floor.color(colors.grid, colors.floor);
+    this.#bodies.forEach((body, place) => body.color(this.#colorsOf(place)));
+    this.draw();
+  }
+
+  setBodies(sources: readonly BodySource[]): void {
+    for (const body of this.#bodies) {
+      body.group.removeFromParent();
+      body.dispose();
+    }
+    this.#bodies = sources.map((source, place) => new Body(source, this.#colorsOf(place)));
+    const angle = MathUtils.degToRad(HOME.azimuth);
+    this.#bodies.forEach(({ group }, place) => {
+      const beside = APART * (place - (this.#bodies.length - 1) / 2);
+      group.position.x += beside * Math.cos(angle);
+      group.position.z -= beside * Math.sin(angle);
+      this.#scene.add(group);
+    });
+    this.#controls.target.set(0, HIP_HEIGHT, 0);
+  }
+
+  show({ times, follow, ...options }: Shown): void {
+    this.#bodies.forEach((body, place) => body.show(times[place] ?? 0, options));
+    if (follow) this.#follow();
+    this.draw();
+  }
+
+  resize(width: number, height: number): void {
+    if (width === 0 || height === 0) return;
+    this.#renderer.setSize(width, height, false);
+    this.#camera.aspect = width / height;
+    this.#camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  /** Where the joints of the first body are seen. */
+  joints(): readonly Place[] {
+    const names = this.#bodies[0]?.source.rig.motion.names ?? [];
+    return names.map((name, joint) => this.#seen(0, joint, 0, name));
+  }
+
+  /** Where a name over each body's head is seen. */
+  heads(): readonly Place[] {
+    return this.#bodies.map(({ source }, place) =>
+      this.#seen(place, source.head >= 0 ? source.head : source.rig.root, OVER_HEAD, ""),
+    );
+  }
+
+  #seen(body: number, joint: number, above: number, name: string): Place {
+    const { clientWidth: width, clientHeight: height } = this.#renderer.domElement;
+    const point = new Vector3();
+    const { group, pose } = this.#bodies[body] ?? {};
+    if (group && pose) group.localToWorld(point.fromArray(pose, joint * 3));
+    point.setY(point.y + above).project(this.#camera);
+    return { name, x: ((point.x + 1) / 2) * width, y: ((1 - point.y) / 2) * height };
+  }
+
+  /** Draw before the next frame, once however often it is called. */
+  draw(): void {
+    this.#request ||= requestAnimationFrame(() => {
+      this.#request = 0;
+      this.#renderer.render(this.#scene, this.#camera);
+      this.#told.ondraw();
+    });
+  }
+
+  dispose(): void {
+    cancelAnimationFrame(this.#request);
+    this.setBodies([]);
+    this.#controls.dispose();
+    this.#floor.dispose();
+    this.#renderer.dispose();
+  }
+
+  #colorsOf(place: number): BodyColors {
+    const { bodies } = this.#colors;
+    const colors = bodies[place % bodies.length];
+    if (!colors) throw new Error("A stage needs colors for its bodies.");
+    return colors;
+  }
+
+  /** Go with the middle of the bodies over the floor. */
+  #follow(): void {
+    const middle = new Vector3();
+    const hips = new Vector3();
+    for (const body of this.#bodies) {
+      middle.add(hips.fromArray(body.pose, body.source.rig.root * 3).add(body.group.position));
+    }
+    middle.divideScalar(Math.max(1, this.#bodies.length)).setY(this.#controls.target.y);
+    const gone = middle.sub(this.#controls.target);
+    this.#controls.target.add(gone);
+    this.#camera.position.add(gone);
+    this.#controls.update();
+  }
+}

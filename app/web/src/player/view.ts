@@ -1,0 +1,58 @@
+/**
+ * How the player shows what it plays: fields for the address of any page that has a player.
+ * `new Address({ ...PLAYER, other: text() })`
+ */
+import { flag, number, text, type Values } from "$/core/query";
+
+const MAX_SECONDS = 1e6;
+export const SPEEDS = [0.1, 0.25, 0.5, 1, 2] as const;
+
+export const PLAYER = {
+  /** Seconds. */
+  t: number(0, 0, MAX_SECONDS),
+  speed: number(1, SPEEDS[0], SPEEDS[4]),
+  loop: flag(true),
+  /** The range that is played, seconds; null: the whole. */
+  from: number(null, 0, MAX_SECONDS),
+  to: number(null, 0, MAX_SECONDS),
+  follow: flag(true),
+  place: flag(false),
+  mirror: flag(false),
+  ghosts: flag(false),
+  trails: flag(false),
+  names: flag(false),
+  /** The camera around its target: azimuth and polar angle in degrees, distance in meters. */
+  cam: text(),
+};
+
+export type PlayerValues = Values<typeof PLAYER>;
+
+export interface Camera {
+  readonly azimuth: number;
+  readonly polar: number;
+  readonly distance: number;
+}
+
+export const HOME: Camera = { azimuth: 35, polar: 78, distance: 4 };
+
+/** `35,78,4` as a camera; HOME where it cannot be read. */
+export function readCamera(text: string): Camera {
+  const [azimuth = NaN, polar = NaN, distance = NaN] = text.split(",").map(Number);
+  const isCamera = Math.abs(azimuth) <= 180 && polar >= 0 && polar <= 180 && distance > 0;
+  return text !== "" && isCamera ? { azimuth, polar, distance } : HOME;
+}
+
+export function writeCamera({ azimuth, polar, distance }: Camera): string {
+  return `${azimuth.toFixed(0)},${polar.toFixed(0)},${Number(distance.toPrecision(3))}`;
+}
+
+/** A time within the range that is played; beyond its end from its beginning on, if it loops. */
+export function within(
+  seconds: number,
+  [from, to]: readonly [number, number],
+  loops: boolean,
+): { time: number; isOver: boolean } {
+  if (seconds < to) return { time: Math.max(from, seconds), isOver: false };
+  if (!loops || to <= from) return { time: to, isOver: true };
+  return { time: from + ((seconds - from) % (to - from)), isOver: false };
+}

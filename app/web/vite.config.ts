@@ -1,0 +1,23 @@
+import { fileURLToPath } from "node:url";
+import { svelte } from "@sveltejs/vite-plugin-svelte";
+import { defineConfig } from "vitest/config";
+
+const src = fileURLToPath(new URL("./src", import.meta.url));
+
+export default defineConfig({
+  plugins: [svelte()],
+  // Addresses relative to the files: the server may stand under any path of a proxy.
+  base: "./",
+  resolve: { alias: { $: src } },
+  build: {
+    target: "es2022",
+    // The policy of the pages allows no data: in scripts and styles; small files stay files.
+    assetsInlineLimit: 0,
+    modulePreload: { polyfill: false },
+    manifest: "manifest.json",
+    rolldownOptions: { checks: { pluginTimings: false } },
+    // three.js, which is loaded with the player.
+    chunkSizeWarningLimit: 600,
+  },
+  test: { include: ["src/**/*.test.ts"], environment: "node" },
+});
