@@ -23,7 +23,7 @@ def offline() -> Kinedex:
     return Kinedex("http://127.0.0.1:1")
 
 
-@pytest.mark.parametrize("name", generated())
+@pytest.mark.parametrize("name", sorted(generated()))
 def test_each_generated_file_is_up_to_date(name: str) -> None:
     assert (CLIENT / name).read_text() == generated()[name], "run `make client`"
 
