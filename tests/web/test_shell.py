@@ -21,7 +21,7 @@ NAMED = ["", *(name for name in PAGE_NAMES if name != "clips")]
 
 
 def test_every_page_opens_by_its_address_and_from_the_navigation(page: Page) -> None:
-    page.goto("/jobs")
+    page.goto("/search")
     links = page.get_by_role("navigation", name="Pages").locator("li a")
     expect(links).to_have_count(len(NAMED))
     for place, name in enumerate(NAMED):
@@ -43,14 +43,14 @@ def test_the_shell_has_no_serious_fault(
     browser: Browser, demo_service: Live, scheme: Scheme, size: tuple[int, int]
 ) -> None:
     with opened(browser, demo_service.url, size=size, scheme=scheme) as page:
-        page.goto("/models")
+        page.goto("/search")
         expect(page.locator("h1")).to_be_visible()
         assert serious_faults(page) == []
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
 
 
 def test_a_keyboard_skips_the_navigation(page: Page) -> None:
-    page.goto("/models")
+    page.goto("/search")
     expect(page.locator("h1")).to_be_visible()
     page.keyboard.press("Tab")
     expect(page.get_by_text("Skip to the content")).to_be_focused()
@@ -59,7 +59,7 @@ def test_a_keyboard_skips_the_navigation(page: Page) -> None:
 
 
 def test_the_theme_that_is_chosen_stays(page: Page) -> None:
-    page.goto("/models")
+    page.goto("/search")
     background = "getComputedStyle(document.documentElement).backgroundColor"
     light = page.evaluate(background)
     page.get_by_role("button", name="Dark theme").click()
@@ -78,7 +78,7 @@ def test_a_service_that_is_away_is_said_and_found_again(
         expect(page.locator("h1")).to_be_visible()
         page.route("**/v1/**", lambda route: route.abort())
         page.route("**/livez", lambda route: route.abort())
-        page.get_by_role("navigation").get_by_role("link", name="Jobs").click()
+        page.get_by_role("navigation").get_by_role("link", name="Search").click()
         page.get_by_role("navigation").get_by_role("link", name="Gallery", exact=True).click()
         page.get_by_role("searchbox").fill("kick")
         expect(page.get_by_text("Kinedex does not answer.")).to_be_visible()

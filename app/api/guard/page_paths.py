@@ -3,18 +3,7 @@
 from __future__ import annotations
 
 DOCS = "/docs"
-PAGE_NAMES = (
-    "clips",
-    "search",
-    "map",
-    "todo",
-    "people",
-    "tasks",
-    "words",
-    "models",
-    "make",
-    "jobs",
-)
+PAGE_NAMES = ("clips", "search")
 """The first part of a page's address; `app/web/src/pages/pages.ts` names the same."""
 
 

@@ -23,14 +23,6 @@ export const PAGES: readonly PageEntry[] = [
     icon: "search",
     load: () => import("./search/Search.svelte"),
   },
-  { name: "map", label: "Map", icon: "map", load: () => import("./map/Map.svelte") },
-  { name: "todo", label: "To do", icon: "todo", load: () => import("./todo/Todo.svelte") },
-  { name: "people", label: "People", icon: "people", load: () => import("./people/People.svelte") },
-  { name: "tasks", label: "Tasks", icon: "tasks", load: () => import("./tasks/Tasks.svelte") },
-  { name: "words", label: "Words", icon: "words", load: () => import("./words/Words.svelte") },
-  { name: "models", label: "Models", icon: "models", load: () => import("./models/Models.svelte") },
-  { name: "make", label: "Make", icon: "make", load: () => import("./make/Make.svelte") },
-  { name: "jobs", label: "Jobs", icon: "jobs", load: () => import("./jobs/Jobs.svelte") },
 ];
 
 /** Pages that the navigation does not list. */

@@ -1,0 +1,167 @@
+"""The search page: words, a motion as the query, what is found, and its addresses."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+from urllib.parse import parse_qs, urlsplit
+
+import pytest
+from playwright.sync_api import Browser, Locator, Page, expect
+
+from app.demo import demo_clips
+from tests.live import Live
+from tests.web.accessibility import serious_faults
+from tests.web.browser import LOOKS, Scheme, opened
+
+STORED = 12
+
+
+@pytest.fixture
+def kick(demo_service: Live) -> dict[str, Any]:
+    with demo_service.client() as client:
+        found: dict[str, Any] = client.get(
+            "/v1/clips", params={"person": "ada", "task": "kick"}
+        ).json()["items"][0]
+    return found
+
+
+def hits(page: Page) -> Locator:
+    return page.get_by_role("list", name="Hits").get_by_role("listitem")
+
+
+def box(page: Page) -> Locator:
+    return page.get_by_role("combobox", name="Words to search for")
+
+
+def player(page: Page) -> Locator:
+    return page.get_by_role("region", name=re.compile("^Player of"))
+
+
+def query_of(page: Page) -> dict[str, list[str]]:
+    return parse_qs(urlsplit(page.url).query)
+
+
+def test_words_are_completed_asked_for_and_left_out(page: Page) -> None:
+    page.goto("/search")
+    expect(page.get_by_role("heading", name="What do you look for?")).to_be_visible()
+    box(page).fill("wav")
+    expect(page.get_by_role("option", name=re.compile("^wave"))).to_be_visible()
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("group", name="wave")).to_be_visible()
+    expect(hits(page).first).to_contain_text("wave")
+    expect(page.get_by_role("status").filter(has_text=" ms")).to_be_visible()
+    assert query_of(page) == {"q": ["wave"]}
+    box(page).fill("-kick")
+    page.keyboard.press("Enter")
+    expect(page).to_have_url(re.compile("q=wave&q=-kick"))
+    page.get_by_role("button", name=re.compile("^With wave")).click()
+    expect(page).to_have_url(re.compile("q=-wave&q=-kick"))
+    expect(hits(page).first).to_contain_text("walk")
+    page.reload()
+    expect(page.get_by_role("button", name=re.compile("^Without wave"))).to_be_visible()
+    page.get_by_role("button", name="Remove wave").click()
+    page.keyboard.press("Backspace")
+    expect(page.get_by_role("heading", name="What do you look for?")).to_be_visible()
+
+
+def test_back_and_forward_keep_what_was_asked(page: Page) -> None:
+    page.goto("/search?q=wave")
+    expect(hits(page).first).to_contain_text("wave")
+    page.get_by_role("button", name="Person").click()
+    page.get_by_role("group", name="Person").get_by_label("ada").check()
+    expect(page).to_have_url(re.compile("person=ada"))
+    expect(hits(page).filter(has_text="ada")).not_to_have_count(0)
+    expect(hits(page).filter(has_not_text="ada")).to_have_count(0)
+    page.keyboard.press("Escape")
+    hits(page).first.get_by_role("link", name=re.compile("^More like")).click()
+    expect(page.get_by_role("region", name="The motion that is searched with")).to_be_visible()
+    assert query_of(page).keys() == {"clip"}
+    page.go_back()
+    expect(page.get_by_role("group", name="wave")).to_be_visible()
+    expect(hits(page).filter(has_not_text="ada")).to_have_count(0)
+    page.go_back()
+    expect(page).not_to_have_url(re.compile("person="))
+    expect(hits(page).filter(has_not_text="ada")).not_to_have_count(0)
+    page.go_forward()
+    expect(hits(page).filter(has_not_text="ada")).to_have_count(0)
+
+
+def test_more_like_a_clip_plays_in_step_with_it(page: Page, kick: dict[str, Any]) -> None:
+    page.goto(f"/clips/{kick['id']}")
+    page.get_by_role("link", name="More like this").click()
+    expect(hits(page)).to_have_count(STORED - 1)
+    expect(hits(page).first).to_contain_text("kick")
+    hits(page).first.get_by_role("button").click()
+    expect(player(page)).to_have_attribute("data-ready", "")
+    expect(player(page).locator(".head")).to_have_count(2)
+    expect(player(page).locator(".head").first).to_have_text(kick["name"])
+    page.get_by_label("Method").select_option("dtw")
+    expect(page.get_by_role("status").filter(has_text="dtw")).to_be_visible()
+    page.reload()
+    expect(player(page).locator(".head")).to_have_count(2)
+    assert query_of(page).keys() == {"clip", "hit", "method"}
+
+
+def test_parts_of_clips_are_found_with_their_times(page: Page, kick: dict[str, Any]) -> None:
+    page.goto(f"/search?clip={kick['id']}&method=metric-task")
+    expect(hits(page)).to_have_count(STORED - 1)
+    page.get_by_label("From second").fill("0.5")
+    page.get_by_label("From second").press("Enter")
+    page.get_by_label("To second").fill("2")
+    page.get_by_label("To second").press("Enter")
+    page.get_by_label("What is found").select_option("windows")
+    expect(hits(page).first).to_contain_text(re.compile(r"\d\.\d\d – \d+\.\d\d s"))
+    assert query_of(page) == {
+        "clip": [kick["id"]],
+        "start": ["0.5"],
+        "end": ["2"],
+        "scope": ["windows"],
+    }
+    hits(page).first.get_by_role("button").click()
+    expect(player(page).locator(".head")).to_have_count(2)
+    expect(page).to_have_url(re.compile("hit="))
+
+
+def test_a_file_is_searched_with_and_asked_for_again(page: Page, tmp_path: Path) -> None:
+    clip = next(demo_clips(("ada",), ("kick",), takes=1))
+    path = tmp_path / "query.bvh"
+    path.write_bytes(clip.content)
+    page.goto("/search?q=wave")
+    page.get_by_label("File to search with").first.set_input_files(path)
+    expect(page.get_by_text("It is not stored")).to_be_visible()
+    expect(hits(page).first).to_contain_text("kick")
+    page.go_back()
+    expect(page.get_by_role("group", name="wave")).to_be_visible()
+    page.go_forward()
+    expect(hits(page).first).to_contain_text("kick")
+    page.reload()
+    expect(page.get_by_role("button", name="Choose the file again")).to_be_visible()
+
+
+def test_what_cannot_be_searched_is_said(browser: Browser, demo_service: Live) -> None:
+    with opened(browser, demo_service.url, expected=("404",)) as page:
+        page.goto("/search?clip=nope")
+        expect(page.get_by_role("alert").filter(has_text="nope")).to_be_visible()
+
+
+@pytest.mark.parametrize(("scheme", "size"), LOOKS)
+def test_it_has_no_serious_fault(
+    browser: Browser,
+    demo_service: Live,
+    kick: dict[str, Any],
+    scheme: Scheme,
+    size: tuple[int, int],
+) -> None:
+    with opened(browser, demo_service.url, size=size, scheme=scheme) as page:
+        for address in ("/search", "/search?q=wave&q=-kick", f"/search?clip={kick['id']}"):
+            page.goto(address)
+            shown = hits(page).first if "?" in address else page.get_by_text("What do you")
+            expect(shown).to_be_visible()
+            if "?" in address:
+                box(page).fill("wa")
+                expect(page.get_by_role("option").first).to_be_visible()
+            assert serious_faults(page) == []
+            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
