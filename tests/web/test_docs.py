@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import shutil
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, FilePayload, Locator, Page, sync_playwright
+from playwright.sync_api import Browser, FilePayload, Locator, Page
 
 from app.config import Settings
 from app.demo import demo_clips
@@ -25,8 +24,6 @@ from app.store.upkeep.backup import back_up
 from tests.libraries import settings_for, work
 from tests.live import Live, serve
 
-CHROMIUM = Path(shutil.which("chromium") or "/usr/bin/chromium")
-FLAGS = ["--no-sandbox", "--disable-dev-shm-usage"]
 LAST = (
     "delete_webhook",
     "delete_pair",
@@ -37,16 +34,6 @@ LAST = (
 LAST += ("delete_clip", "forget_person")
 """Calls that delete what the examples of other calls name, in an order in which all work."""
 SECONDS = 20_000.0
-
-
-@pytest.fixture(scope="module")
-def docs_browser() -> Iterator[Browser]:
-    if not CHROMIUM.exists():
-        pytest.skip("CHROMIUM IS NOT INSTALLED: /docs is not tested (apt-get install chromium)")
-    with sync_playwright() as playwright:
-        found = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        yield found
-        found.close()
 
 
 @pytest.fixture(scope="module")
@@ -80,9 +67,9 @@ def _complete(settings: Settings) -> None:
 
 
 @pytest.fixture(scope="module")
-def docs(docs_browser: Browser, own_demo: Live) -> Iterator[Page]:
+def docs(browser: Browser, own_demo: Live) -> Iterator[Page]:
     """The page; it may log no error but those that a test expects."""
-    page = docs_browser.new_page(base_url=own_demo.url, viewport={"width": 1280, "height": 1600})
+    page = browser.new_page(base_url=own_demo.url, viewport={"width": 1280, "height": 1600})
     page.set_default_timeout(SECONDS)
     errors: list[str] = []
     page.on("console", lambda line: errors.append(line.text) if line.type == "error" else None)
