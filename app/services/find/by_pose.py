@@ -36,7 +36,7 @@ class PoseQuery:
 
     positions: (13, 3) meters in SUN_ROLES order; heading and size do not matter; places: how
     many places of a clip may be hits; include_self: whether the queried clip may be a hit;
-    cursor: `next` of the page before.
+    cursor: `next` of the page before; clip_fields: as in `MotionQuery`.
     """
 
     source: QuerySource | None = None
@@ -47,6 +47,7 @@ class PoseQuery:
     filter: Filter = None
     include_self: bool = False
     cursor: str | None = None
+    clip_fields: frozenset[str] | None = None
 
 
 def find_pose(lib: Library, query: PoseQuery) -> Hits:
@@ -65,7 +66,7 @@ def find_pose(lib: Library, query: PoseQuery) -> Hits:
     if query.source is not None:
         exclude = query.source.excluded_clips(include_self=query.include_self)
     question = cursors.digest("pose", pose.tobytes().hex(), places, clip_filter, sorted(exclude))
-    paging = Paging.at(query.cursor, question)
+    paging = Paging.at(query.cursor, question, query.clip_fields)
     _, rows = lib.poses.state
     load = partial(lib.arrays.get_many, lib.store)
     ranking = PoseRanking(rows, rows.labels.mask(clip_filter, exclude), pose, load, places)

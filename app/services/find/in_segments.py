@@ -53,7 +53,7 @@ def find_in_segments(
         vector, own = _stored_segment(lib, query.source, query.segment)
     excluded = None if query.include_self else own
     question = cursors.digest("segments", own, vector.tobytes().hex(), clip_filter, excluded)
-    paging = Paging.at(query.cursor, question)
+    paging = Paging.at(query.cursor, question, query.clip_fields)
     candidates = _candidates(lib, vector, clip_filter, excluded)
     found, more = merge_overlapping(candidates, query.limit, paging.after)
     to_score = partial(score, scale=SCORE_SCALE)
