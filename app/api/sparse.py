@@ -29,6 +29,13 @@ def sparse_page(page: type[BaseModel], names: list[str], value: object) -> Respo
     return _written(_sparse_page(page, frozenset(names)), value)
 
 
+def clip_fields(names: list[str] | None) -> frozenset[str] | None:
+    """The fields of each hit's clip that are needed for the chosen members; None for all."""
+    if names is None or "clip" in names:
+        return None
+    return frozenset(name.removeprefix("clip.") for name in names if name.startswith("clip."))
+
+
 def _written(model: type[BaseModel], value: object) -> Response:
     # Not by FastAPI, which would check the answer against the schema of whole items.
     content = model.model_validate(value, from_attributes=True).model_dump_json()

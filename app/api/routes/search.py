@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Request, Response
@@ -12,7 +13,7 @@ from app.api.guard.admission import heavy
 from app.api.openapi import body, refusals
 from app.api.queries import QUERY_FILES, source_of
 from app.api.schemas.search import MotionHits, MotionSearch, MotionSearchForm, WordHits, WordSearch
-from app.api.sparse import ChosenFields, sparse_page
+from app.api.sparse import ChosenFields, clip_fields, sparse_page
 from app.services.find import find
 from app.services.find.queries import MotionQuery
 
@@ -65,7 +66,7 @@ def search_motion(
     With scope `windows`, find parts of clips, with their start and end. With scope `segments`,
     find motions from one keypose to the next.
     """
-    found = find.find_motion(lib, query)
+    found = find.find_motion(lib, replace(query, clip_fields=clip_fields(fields)))
     return sparse_page(MotionHits, fields, found) if fields else MotionHits.model_validate(found)
 
 
@@ -80,5 +81,5 @@ def search_words(lib: Lib, sent: WordSearch, fields: ChosenFields = None) -> Wor
 
     The `score` of a hit is a probability, in both modes.
     """
-    found = find.find_words(lib, sent.query())
+    found = find.find_words(lib, replace(sent.query(), clip_fields=clip_fields(fields)))
     return sparse_page(WordHits, fields, found) if fields else WordHits.model_validate(found)

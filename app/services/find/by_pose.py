@@ -36,7 +36,8 @@ class PoseQuery:
 
     time: seconds from the start of the motion; positions: (13, 3) meters, Y up, in SUN_ROLES
     order; heading and size do not matter; places: whether a clip may be one hit or several;
-    include_self: whether the queried clip may be a hit; cursor: `next` of the page before.
+    include_self: whether the queried clip may be a hit; cursor: `next` of the page before;
+    clip_fields: as in `MotionQuery`.
     """
 
     source: QuerySource | None = None
@@ -47,6 +48,7 @@ class PoseQuery:
     filter: Filter = None
     include_self: bool = False
     cursor: str | None = None
+    clip_fields: frozenset[str] | None = None
 
 
 def find_pose(lib: Library, query: PoseQuery) -> Hits:
@@ -61,7 +63,7 @@ def find_pose(lib: Library, query: PoseQuery) -> Hits:
     version = lib.poses.catch_up(lib.store)
     pose, exclude = _pose(lib, query)
     question = cursors.digest("pose", pose.tobytes().hex(), places, clip_filter, sorted(exclude))
-    paging = Paging.at(query.cursor, question)
+    paging = Paging.at(query.cursor, question, query.clip_fields)
     _, rows = lib.poses.state
     load = partial(lib.arrays.get_many, lib.store)
     ranking = PoseRanking(rows, rows.labels.mask(clip_filter, exclude), pose, load, places)

@@ -62,7 +62,7 @@ def find_words(lib: Library, query: WordQuery) -> Hits:
     version = lib.index.catch_up(lib.store)
     found = rank_by_words(lib, texts, query.mode, clip_filter)
     question = cursors.digest("words", *texts, query.mode, clip_filter, found.model)
-    paging = Paging.at(query.cursor, question)
+    paging = Paging.at(query.cursor, question, query.clip_fields)
     page = _page(lib, found.ranking, paging, query.limit, found.to_score)
     return Hits(
         method=query.mode,
@@ -99,7 +99,7 @@ def _by_example(
     question = cursors.digest(
         query.source.clip_id, content, method, clip_filter, query.include_self
     )
-    paging = Paging.at(query.cursor, question)
+    paging = Paging.at(query.cursor, question, query.clip_fields)
     found = rank_by_example(
         lib.index,
         arrays,
@@ -121,7 +121,7 @@ def _by_metric(
     question = cursors.digest(
         query.source.clip_id, found.digest, method, clip_filter, query.include_self, found.model
     )
-    paging = Paging.at(query.cursor, question)
+    paging = Paging.at(query.cursor, question, query.clip_fields)
     return _page(lib, found.ranking, paging, query.limit, found.to_score)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 
+from app.store.clips.partial import PartialClip
 from app.store.clips.record import ClipRecord
 
 
@@ -14,7 +15,8 @@ class Hit:
 
     rank: from 1; score: 0..1, higher is closer, and lower for each larger distance; distance: its
     unit depends on the method; start, end: seconds, the part of the clip that was found (the whole
-    clip with scope "clips"); time: seconds, of the nearest pose in a search by pose.
+    clip with scope "clips"); time: seconds, of the nearest pose in a search by pose;
+    clip: with the requested fields.
     """
 
     rank: int
@@ -22,7 +24,7 @@ class Hit:
     distance: float
     start: float
     end: float
-    clip: ClipRecord
+    clip: ClipRecord | PartialClip
     time: float | None = None
 
 

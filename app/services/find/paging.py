@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from app.search.ranking import cursor as cursors
 from app.search.ranking.cursor import Anchor, Position
 from app.services.find.hits import Hit, HitPage
 from app.services.library.library import Library
+from app.store.clips import partial
 from app.store.clips import repository as stored
+from app.store.clips.partial import PartialClip
 from app.store.clips.record import ClipRecord
+from app.store.database.engine import Tx
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,16 +46,21 @@ class Paging:
     """The requested page of a ranking.
 
     question: digest of the query, which binds a cursor to it; after: the last hit of the page
-    before, None for the first page.
+    before, None for the first page; clip_fields: the fields of each hit's clip that are needed,
+    None for all.
     """
 
     question: str
     after: Position | None
+    clip_fields: frozenset[str] | None = None
 
     @classmethod
-    def at(cls, cursor: str | None, question: str) -> Paging:
+    def at(
+        cls, cursor: str | None, question: str, clip_fields: frozenset[str] | None = None
+    ) -> Paging:
         """The page at a client's cursor. Raises BadField if the cursor is of another query."""
-        return cls(question, None if cursor is None else cursors.decode(cursor, question))
+        after = None if cursor is None else cursors.decode(cursor, question)
+        return cls(question, after, clip_fields)
 
     @property
     def anchor(self) -> Anchor | None:
@@ -67,7 +75,7 @@ class Paging:
         """
         before = self.after.rank if self.after else 0
         with lib.store.read() as tx:
-            clips = stored.get_many(tx, {match.clip_id: None for match in page.matches})
+            clips = self._clips(tx, {match.clip_id: None for match in page.matches})
         items = tuple(
             _hit(rank, match, clip, to_score(match.distance))
             for rank, match in enumerate(page.matches, before + 1)
@@ -79,8 +87,13 @@ class Paging:
         position = Position(before + len(page.matches), last.distance, last.key, page.anchor)
         return HitPage(items, cursors.encode(position, self.question))
 
+    def _clips(self, tx: Tx, ids: Collection[str]) -> Mapping[str, ClipRecord | PartialClip]:
+        if self.clip_fields is None or not self.clip_fields <= partial.PLAIN:
+            return stored.get_many(tx, ids)
+        return partial.read(tx, ids, {"duration", *self.clip_fields})
 
-def _hit(rank: int, match: Match, clip: ClipRecord, score: float) -> Hit:
+
+def _hit(rank: int, match: Match, clip: ClipRecord | PartialClip, score: float) -> Hit:
     duration = clip.duration or match.end or 0.0
     end = duration if match.end is None else min(match.end, duration)
     return Hit(rank, score, match.distance, match.start, end, clip, match.time)

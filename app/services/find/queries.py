@@ -24,7 +24,8 @@ class MotionQuery:
     scope: "clips" compares whole clips; "windows" finds parts of clips, at any time in a clip;
     "segments" finds motions from one keypose to the next. segment: only with scope "segments", the
     index of a segment of the queried clip, which is then the query. limit: 1 to 1,000 hits;
-    include_self: whether the query itself may be a hit; cursor: `next` of the page before.
+    include_self: whether the query itself may be a hit; cursor: `next` of the page before;
+    clip_fields: fields of each hit's clip that are needed, None for all.
     """
 
     source: QuerySource
@@ -35,6 +36,7 @@ class MotionQuery:
     segment: int | None = None
     include_self: bool = False
     cursor: str | None = None
+    clip_fields: frozenset[str] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +44,7 @@ class WordQuery:
     """A search by words: mode "default" (kernel ridge) or "cca" (Takano's correlated space).
 
     words: words, phrases or sentences; a word with a minus before it (-left) excludes the clips
-    that carry it.
+    that carry it; clip_fields: as in `MotionQuery`.
     """
 
     words: Sequence[str]
@@ -50,3 +52,4 @@ class WordQuery:
     limit: int = DEFAULT_LIMIT
     filter: Filter = None
     cursor: str | None = None
+    clip_fields: frozenset[str] | None = None
