@@ -15,6 +15,7 @@ from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
 from app import errors
+from app.api.bodies import MAX_FIELD_BYTES
 from app.api.failures import problems
 from app.api.failures.problems import problem_of
 from app.api.guard.idempotency import HEADER, takes_key
@@ -155,6 +156,7 @@ def _form_schema(
 
 
 _CONTENT = {"contentMediaType", "contentSchema"}
+_BOUNDS = {"maxLength", "enum", "const", "format"}
 
 
 def _text_field(field: dict[str, Any]) -> dict[str, Any]:
@@ -171,6 +173,8 @@ def _text_field(field: dict[str, Any]) -> dict[str, Any]:
         del field["anyOf"]
         field = {name: value for name, value in field.items() if value is not None}
     kept = {name: value for name, value in field.items() if name not in _CONTENT}
+    if kept.get("type") == "string" and not _BOUNDS & kept.keys():
+        kept["maxLength"] = MAX_FIELD_BYTES
     return kept if {"examples", "default"} & kept.keys() else {**kept, "examples": [""]}
 
 

@@ -21,12 +21,12 @@ SOURCE = "labels test"
 
 @pytest.fixture(scope="module")
 def clip() -> DemoClip:
-    return next(demo_clips(["dele"], ["walk"], takes=1))
+    return next(demo_clips(["dele"], ["jump"], takes=1))
 
 
 @pytest.fixture(scope="module")
 def other() -> DemoClip:
-    return next(demo_clips(["dele"], ["kick"], takes=1))
+    return next(demo_clips(["dele"], ["wave"], takes=1))
 
 
 @pytest.fixture

@@ -30,7 +30,7 @@ def test_a_folder_is_imported_with_its_manifest(
     (tmp_path / "broken.bvh").write_bytes(new[0].content[:2000])
     ended = kinedex("import", str(tmp_path), "--url", demo_service.url)
     assert ended.code == 1
-    assert "2 of 3 files are in the library (2 new)." in ended.out
+    assert "3 files: 2 new, 0 updated, 0 unchanged, 1 failed." in ended.out
     assert "broken.bvh" in ended.out
     url = ("--url", demo_service.url)
     clips = kinedex("clips", "list", "--person", "dele", "--json", *url).json()["items"]

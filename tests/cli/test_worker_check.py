@@ -44,13 +44,13 @@ def test_a_worker_that_hangs_is_unhealthy_until_it_goes_on(tmp_path: Path) -> No
         return end(start("worker", "--check", **settings)).code == 0
 
     try:
-        wait_until(is_healthy, 60.0)
+        wait_until(is_healthy, 300.0)
         os.kill(program.pid, signal.SIGSTOP)
-        wait_until(lambda: not is_healthy(), 60.0)
+        wait_until(lambda: not is_healthy(), 300.0)
         checked = end(start("worker", "--check", **settings))
         assert "a worker hangs" in checked.err
         os.kill(program.pid, signal.SIGCONT)
-        wait_until(is_healthy, 60.0)
+        wait_until(is_healthy, 300.0)
         program.terminate()
         assert end(program).code == 0
         assert not is_healthy()

@@ -48,7 +48,9 @@ def test_searches_by_clip_file_words_and_pose(client: Kinedex, tmp_path: Path) -
     assert [hit.rank for hit in hits] == [1, 2, 3]
     path = tmp_path / "query.bvh"
     path.write_bytes(client.clips.file(clip))
-    by_file = client.search.motion(file=path, limit=3, filter={"person": ["ada"]})
+    by_file = client.search.motion(
+        file=path, limit=3, filter={"person": ["ada"]}, include_self=True
+    )
     assert by_file[0].clip.id == clip
     words = client.search.words(["kick nosuchword"], limit=2)
     assert words.unknown_words == ["nosuchword"]

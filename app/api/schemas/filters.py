@@ -10,11 +10,11 @@ from pydantic.config import JsonDict
 from app.api.schemas.base import AnyOf, Incoming, Seconds
 from app.search.index.filters import META_PATTERN, is_metadata_key
 
-_VALUE: JsonDict = {"type": ["string", "number", "boolean"]}
+_VALUE: JsonDict = {"type": ["string", "number", "boolean"], "maxLength": 300}
 _META: JsonDict = {
     "description": "Metadata: `meta.KEY` and `not_meta.KEY` are a value or a list of values;"
     " `meta.KEY.min` and `meta.KEY.max` are numbers, both ends included.",
-    "anyOf": [_VALUE, {"type": "array", "items": _VALUE}],
+    "anyOf": [_VALUE, {"type": "array", "items": _VALUE, "maxItems": 100}],
 }
 
 

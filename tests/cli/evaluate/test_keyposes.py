@@ -46,7 +46,9 @@ def test_json_and_csv_for_programs(kinedex: Kinedex, danced: Path, tmp_path: Pat
     assert result["tolerance"] == 0.05
     assert len(result["clips"]) == result["recordings"] == len(TEMPI)
     rms = result["methods"]["rms"]
-    assert set(rms) == {"held_out", "usual_thresholds", "learned", "over_t1", "over_t2"}
+    assert set(rms) == {
+        "held_out", "usual_thresholds", "learned", "over_t1", "over_t2", "by_group"
+    }  # fmt: skip
     assert len(rms["over_t1"]["values"]) == len(rms["over_t1"]["recall"])
     rows = rows_of(file)
     assert {row["table"] for row in rows} == {"clips", "methods", "over_t1", "over_t2"}

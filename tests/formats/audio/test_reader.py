@@ -159,5 +159,5 @@ def test_the_existing_part_of_a_cut_off_recording_is_decoded(format: str) -> Non
 
 def test_without_soundfile_the_error_names_the_package(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "soundfile", None)
-    with pytest.raises(ExtraNeeded, match=r"kinedex\[audio\]"):
+    with pytest.raises(ExtraNeeded, match=r"pip install soundfile"):
         read_audio(encoded())

@@ -97,7 +97,9 @@ def test_new_clips_are_found_without_a_fit_and_a_fit_ends_old_cursors(growing: L
     (new,) = demo_clips(("elin",), ("kick",), takes=1)
 
     def search(limit: int = 2, cursor: str | None = None) -> Hits:
-        query = MotionQuery(QuerySource(content=io.BytesIO(new.content)), method=TASK)
+        query = MotionQuery(
+            QuerySource(content=io.BytesIO(new.content)), method=TASK, include_self=True
+        )
         return find.find_motion(growing, replace(query, limit=limit, cursor=cursor))
 
     first = search()
