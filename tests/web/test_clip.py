@@ -13,6 +13,8 @@ from tests.live import Live
 from tests.web.accessibility import serious_faults
 from tests.web.browser import LOOKS, Scheme, opened
 
+pytestmark = pytest.mark.slow
+
 
 class OpenClip(Protocol):
     """Opens the page of a kick, and waits for its player; gives the clip."""

@@ -24,6 +24,8 @@ from app.store.upkeep.backup import back_up
 from tests.libraries import settings_for, work
 from tests.live import Live, serve
 
+pytestmark = pytest.mark.slow
+
 LAST = (
     "delete_webhook",
     "delete_pair",

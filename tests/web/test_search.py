@@ -15,6 +15,8 @@ from tests.live import Live
 from tests.web.accessibility import serious_faults
 from tests.web.browser import LOOKS, Scheme, opened
 
+pytestmark = pytest.mark.slow
+
 STORED = 12
 
 
