@@ -81,7 +81,7 @@ def test_files_come_compressed_as_the_client_takes_them(
         raw = b"".join(answer.iter_raw())
     assert answer.headers.get("content-encoding") == sent
     assert answer.headers["content-type"].startswith("text/javascript")
-    assert answer.headers["vary"] == "Accept-Encoding"
+    assert set(answer.headers["vary"].split(", ")) == {"Accept-Encoding"}
     plain = (DIST / "assets" / script).read_bytes()
     if sent == "gzip":
         assert gzip.decompress(raw) == plain
@@ -122,5 +122,5 @@ def test_pages_stand_under_the_path_of_a_proxy(tmp_path: Path) -> None:
     app = FastAPI()
     app.state.gates = None
     install_pages(app, tmp_path)
-    page = TestClient(app, root_path="/motion").get("/motion/jobs")
+    page = TestClient(app, root_path="/motion").get("/motion/search")
     assert page.text == '<script src="/motion/assets/a.js"></script>'

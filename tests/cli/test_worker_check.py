@@ -38,6 +38,7 @@ def test_a_worker_that_beats_is_healthy(kinedex: Kinedex, tmp_path: Path) -> Non
 def test_a_worker_that_hangs_is_unhealthy_until_it_goes_on(tmp_path: Path) -> None:
     """A real worker is stopped by a signal, as if it hung."""
     settings = {"data_dir": tmp_path / "data", "job_lease_s": 4, "job_heartbeat_s": 0.2}
+    (tmp_path / "data").mkdir()
     program = start("worker", **settings)
 
     def is_healthy() -> bool:
