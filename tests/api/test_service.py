@@ -16,7 +16,7 @@ from app.store import keys
 from app.store.key_role import KeyRole
 from app.store.store import Store
 from tests.api.conftest import assert_problem
-from tests.live import Live, serve
+from tests.live import Live, serve, wait_until
 
 METHODS = {"get", "post", "put", "patch", "delete"}
 
@@ -184,8 +184,12 @@ def test_the_log_names_the_client_and_the_key(locked: tuple[Live, dict[KeyRole, 
     with live.client(headers={"X-API-Key": secret}) as client:
         found = client.get("/v1/clips/named-in-the-log")
         assert_problem(found, 404, "clip_not_found")
-    lines = [json.loads(line) for line in live.log.read_text().splitlines()]
-    (line,) = [line for line in lines if line.get("path") == "/v1/clips/named-in-the-log"]
+
+    def logged() -> list[dict[str, Any]]:  # the line is written after the answer was sent
+        lines = [json.loads(line) for line in live.log.read_text().splitlines()]
+        return [line for line in lines if line.get("path") == "/v1/clips/named-in-the-log"]
+
+    (line,) = wait_until(logged, 60.0)
     assert (line["client"], line["key_id"]) == ("127.0.0.1", secret.split("_")[1])
 
 

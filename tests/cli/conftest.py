@@ -5,9 +5,11 @@ from __future__ import annotations
 import csv
 import json
 import os
+import sqlite3
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -101,19 +103,14 @@ def imported(data_dir: Path, folder: Path) -> Ended:
 
 
 @pytest.fixture
-def kinedex(
-    imported: Ended,
-    data_dir: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> Kinedex:
-    """The command line in this process, on the imported library. It needs no start of Python."""
+def program(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Kinedex:
+    """The command line in this process, with only these settings. It needs no start of Python."""
 
     def run(*words: str, **settings: object) -> Ended:
         with monkeypatch.context() as patched:
             for name in [name for name in os.environ if name.startswith("KINEDEX_")]:
                 patched.delenv(name)
-            for name, value in ({"data_dir": data_dir} | settings).items():
+            for name, value in settings.items():
                 patched.setenv(f"KINEDEX_{name.upper()}", str(value))
             patched.setattr(sys, "argv", ["kinedex", *words])
             with pytest.raises(SystemExit) as ended:
@@ -121,5 +118,25 @@ def kinedex(
         printed = capsys.readouterr()
         return Ended(int(ended.value.code or 0), printed.out, printed.err)
 
-    assert imported.code == 1, imported.err  # one file is damaged
     return run
+
+
+@pytest.fixture
+def kinedex(imported: Ended, data_dir: Path, program: Kinedex) -> Iterator[Kinedex]:
+    """The command line on the imported library, which a test must leave with the same clips."""
+    assert imported.code == 1, imported.err  # one file is damaged
+    before = _clip_ids(data_dir)
+    yield lambda *words, **settings: program(*words, **{"data_dir": data_dir} | settings)
+    assert _clip_ids(data_dir) == before, "the test changed the clips that all tests share"
+
+
+@pytest.fixture
+def kinedex_alone(tmp_path_factory: pytest.TempPathFactory, program: Kinedex) -> Kinedex:
+    """The command line on a library of this test alone, which is empty at first."""
+    own = tmp_path_factory.mktemp("alone") / "data"
+    return lambda *words, **settings: program(*words, **{"data_dir": own} | settings)
+
+
+def _clip_ids(data_dir: Path) -> list[str]:
+    with closing(sqlite3.connect(data_dir / "kinedex.sqlite3")) as database:
+        return [clip_id for (clip_id,) in database.execute("SELECT id FROM clips ORDER BY id")]

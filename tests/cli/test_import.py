@@ -44,15 +44,15 @@ def test_the_same_folder_again_adds_nothing(
     assert outcomes == {BAD: "failed", ABSENT: "absent"}
 
 
-def test_a_zip_and_a_single_file_are_imported_too(kinedex: Kinedex, tmp_path: Path) -> None:
+def test_a_zip_and_a_single_file_are_imported_too(kinedex_alone: Kinedex, tmp_path: Path) -> None:
     (new,) = demo_clips(["chika"], ["bow"], takes=1)
     file, archive = tmp_path / "bow.bvh", tmp_path / "bow.zip"
     file.write_bytes(new.content)
     with zipfile.ZipFile(archive, "w") as zipped:
         zipped.write(file, "bow.bvh")
-    waiting = kinedex("import", str(archive), "--no-wait", "--json").json()
+    waiting = kinedex_alone("import", str(archive), "--no-wait", "--json").json()
     assert waiting["state"] == "processing"
-    job = kinedex("import", str(file), "--json").json()
+    job = kinedex_alone("import", str(file), "--json").json()
     assert [f["outcome"] for f in job["result"]["files"]] == ["ready"]
 
 

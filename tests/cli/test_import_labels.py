@@ -29,38 +29,38 @@ def _files(ended: Ended) -> dict[str, dict[str, Any]]:
 
 
 def test_labels_from_options_and_paths_are_applied_again_after_a_correction(
-    kinedex: Kinedex, mocap: Path
+    kinedex_alone: Kinedex, mocap: Path
 ) -> None:
     words = ("--labels", "{person}/{task}/{take}.bvh", "--license", "CC0", "--meta", "site=lab 2")
-    first = kinedex("import", str(mocap), *words, "--meta", "age=30")
+    first = kinedex_alone("import", str(mocap), *words, "--meta", "age=30")
     assert first.code == 0, first.err
     assert "3 files: 2 new, 0 updated, 0 unchanged, 1 skipped." in first.out
     assert "Skipped, because they are no motions: notes.txt" in first.out
 
     corrected = ("--labels", "{person}/{task}/{take}.bvh", "--meta", "age=31", "--words", "slow")
-    again = kinedex("import", str(mocap), *corrected, "--json")
+    again = kinedex_alone("import", str(mocap), *corrected, "--json")
     differences = _files(again)["elin/walk/01.bvh"]["differences"]
     assert differences == [
         {"field": "meta.age", "stored": 30, "sent": 31, "applied": True},
         {"field": "words", "stored": None, "sent": ["slow"], "applied": True},
     ]
-    printed = kinedex("import", str(mocap), "--person", "anna").out
+    printed = kinedex_alone("import", str(mocap), "--person", "anna").out
     assert "2 updated" in printed
     assert [line.split() for line in printed.splitlines() if line.startswith("elin/walk/01")] == [
         ["elin/walk/01.bvh", "person", "elin", "anna"]
     ]
-    same = kinedex("import", str(mocap), "--person", "anna").out
+    same = kinedex_alone("import", str(mocap), "--person", "anna").out
     assert "3 files: 0 new, 0 updated, 2 unchanged, 1 skipped." in same
 
 
 def test_the_exit_code_says_whether_files_failed_or_none_was_found(
-    kinedex: Kinedex, tmp_path: Path
+    kinedex_alone: Kinedex, tmp_path: Path
 ) -> None:
     (tmp_path / "notes.txt").write_text("buy milk")
-    nothing = kinedex("import", str(tmp_path))
+    nothing = kinedex_alone("import", str(tmp_path))
     assert (nothing.code, nothing.out.split(":")[0]) == (2, "1 file")
     (tmp_path / "walk.bvh").write_text("buy milk")
-    assert kinedex("import", str(tmp_path)).code == 1
+    assert kinedex_alone("import", str(tmp_path)).code == 1
 
 
 @pytest.mark.parametrize(
@@ -73,22 +73,22 @@ def test_the_exit_code_says_whether_files_failed_or_none_was_found(
     ],
 )
 def test_a_wrong_option_is_refused_before_anything_is_stored(
-    kinedex: Kinedex, mocap: Path, words: tuple[str, ...], part: str
+    kinedex_alone: Kinedex, mocap: Path, words: tuple[str, ...], part: str
 ) -> None:
-    ended = kinedex("import", str(mocap), *words)
+    ended = kinedex_alone("import", str(mocap), *words)
     assert ended.code != 0
     assert part in " ".join(ended.err.split())
     assert ended.out == ""
 
 
-def test_warnings_are_summed_up(kinedex: Kinedex, tmp_path: Path) -> None:
+def test_warnings_are_summed_up(kinedex_alone: Kinedex, tmp_path: Path) -> None:
     (clip,) = demo_clips(["elin"], ["jump"], takes=1)
     text = clip.content.decode()
     begin = text.index("Frame Time:")
     end = text.index("\n", begin)
     (tmp_path / "fast.bvh").write_text(f"{text[:begin]}Frame Time: 0.015{text[end:]}")
-    ended = kinedex("import", str(tmp_path))
+    ended = kinedex_alone("import", str(tmp_path))
     assert "frame_rate_suspect" in ended.out
     assert "fast.bvh: " in ended.out
-    listed = _files(kinedex("import", str(tmp_path), "--json"))["fast.bvh"]
+    listed = _files(kinedex_alone("import", str(tmp_path), "--json"))["fast.bvh"]
     assert [warning["code"] for warning in listed["warnings"]] == ["frame_rate_suspect"]
