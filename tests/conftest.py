@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterator
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from app.demo import demo_clips
 from tests.live import Live, serve
@@ -15,6 +16,10 @@ TASKS = ("walk", "wave", "kick")
 
 # WordNet takes seconds to load, in every fit of every library; its own test sets this to true.
 os.environ.setdefault("KINEDEX_WORDNET", "false")
+
+# On a busy machine every example takes long, and that says nothing about the code.
+settings.register_profile("busy", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("busy")
 
 
 @pytest.fixture(scope="session")

@@ -11,8 +11,8 @@ import warnings
 
 import numpy as np
 
-from app.errors import KinedexError
 from app.json_stderr import json_stderr
+from app.kinedex_error import KinedexError
 from app.services.library.analysis_pool import AnalysisPool, AnalysisRequest, Limits
 
 KEY = "kx_0123456789ab_" + "s" * 43

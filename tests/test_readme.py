@@ -72,7 +72,7 @@ def test_the_example_in_python_runs(demo_service: Live) -> None:
         env=os.environ | {"KINEDEX_URL": demo_service.url},
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=300,
         check=False,
     )
     assert (ended.returncode, ended.stderr) == (0, "")

@@ -57,7 +57,7 @@ from app.api.schemas.search import MotionSearch
 from app.api.schemas.synthesis import Synthesize
 from app.api.validators import install_validators
 from app.config import Settings
-from app.errors import KinedexError
+from app.kinedex_error import KinedexError
 from app.services.library.library import Library
 
 _SUMMARY = "Search human motion by example and by words, and ask who does what."

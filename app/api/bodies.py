@@ -19,7 +19,8 @@ from starlette.exceptions import HTTPException
 
 from app.api.failures.problems import MalformedBody, UnsupportedMediaType
 from app.api.guard.media import FORM, is_json, media_type
-from app.errors import BadField, DiskFull, Place
+from app.errors import BadField, DiskFull
+from app.kinedex_error import Place
 
 MAX_FIELDS = 32
 MAX_FILES = 4

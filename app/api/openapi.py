@@ -20,7 +20,7 @@ from app.api.failures import problems
 from app.api.failures.problems import problem_of
 from app.api.guard.idempotency import HEADER, takes_key
 from app.api.schemas.problem import Problem
-from app.errors import KinedexError, Place
+from app.kinedex_error import KinedexError, Place
 
 _REF = "#/components/schemas/{model}"
 _DESCRIPTIONS = {

@@ -20,7 +20,8 @@ from app.api.failures.problems import ReaderTooSlow, status_of
 from app.api.guard.envelope import CutOff
 from app.api.guard.gates import Gates, Slot, listening
 from app.deadline import Deadline, within
-from app.errors import ClientLeft, KinedexError
+from app.errors import ClientLeft
+from app.kinedex_error import KinedexError
 
 log = logging.getLogger(__name__)
 

@@ -8,7 +8,8 @@ from typing import BinaryIO
 from starlette.datastructures import UploadFile
 
 from app.api.schemas.query_source import QueryForm
-from app.errors import BadField, Place
+from app.errors import BadField
+from app.kinedex_error import Place
 from app.services.find.query_source import QuerySource
 
 QUERY_FILES = {

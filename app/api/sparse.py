@@ -12,7 +12,8 @@ from fastapi import Query, Response
 from pydantic import BaseModel, create_model
 
 from app.api.schemas.base import Fields, Outgoing
-from app.errors import BadField, Place
+from app.errors import BadField
+from app.kinedex_error import Place
 
 ChosenFields = Annotated[Fields | None, Query()]
 CACHED = 256

@@ -14,7 +14,8 @@ import typer
 
 from app.cli.output import AsJson, print_json, progress_bar
 from app.cli.settings import open_store, settings_of
-from app.errors import BadField, Place
+from app.errors import BadField
+from app.kinedex_error import Place
 
 
 def backup(

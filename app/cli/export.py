@@ -14,7 +14,8 @@ from app.cli.options import FilterJson, filter_of
 from app.cli.output import AsJson, print_json, progress_bar
 from app.cli.session import open_client
 from app.cli.settings import open_library, remote_of
-from app.errors import BadField, Place
+from app.errors import BadField
+from app.kinedex_error import Place
 from app.services.views.export_format import (
     ExportContent,
     ExportFormat,

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from app.errors import BadField, Place
+from app.errors import BadField
+from app.kinedex_error import Place
 
 
 def write_whole(path: Path, blocks: Iterable[bytes]) -> int:

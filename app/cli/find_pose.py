@@ -24,7 +24,8 @@ from app.cli.query_source import (
 )
 from app.cli.session import open_client
 from app.cli.settings import open_library, remote_of
-from app.errors import BadField, ConfigurationError, Place
+from app.errors import BadField, ConfigurationError
+from app.kinedex_error import Place
 from app.search.pose.pose_matches import MatchesPerClip
 
 if TYPE_CHECKING:

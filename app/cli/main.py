@@ -13,7 +13,8 @@ from app import __version__
 from app.cli.commands import COMMANDS, NEEDS_THIS_MACHINE
 from app.cli.lazy import lazy_group
 from app.cli.settings import remember, remote_of
-from app.errors import ClipNotFound, ConfigurationError, KinedexError
+from app.errors import ClipNotFound, ConfigurationError
+from app.kinedex_error import KinedexError
 
 FAILURE = 1
 PARTS_OF_REQUESTS = frozenset({"body", "query", "path", "header"})

@@ -7,7 +7,8 @@ from typing import Annotated, Any
 
 import typer
 
-from app.errors import BadField, Place
+from app.errors import BadField
+from app.kinedex_error import Place
 
 FilterJson = Annotated[
     str | None,

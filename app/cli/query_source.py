@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from app.errors import BadField, ClipNotFound, Place
+from app.errors import BadField, ClipNotFound
+from app.kinedex_error import Place
 
 if TYPE_CHECKING:
     from app.services.find.query_source import QuerySource

@@ -17,7 +17,8 @@ from app.cli import import_report
 from app.cli.fit import wait_for
 from app.cli.output import print_json, progress_bar
 from app.cli.session import open_client
-from app.errors import BadField, Place
+from app.errors import BadField
+from app.kinedex_error import Place
 
 if TYPE_CHECKING:
     from kinedex import Kinedex

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from app.errors import BadField, FormatNotSupported, MotionNeeded, Place, SkeletonNotNeeded
+from app.errors import BadField, FormatNotSupported, MotionNeeded, SkeletonNotNeeded
 from app.formats.acclaim.amc import read_amc
 from app.formats.bvh.reader import read_bvh
 from app.formats.c3d.reader import read_c3d
@@ -17,6 +17,7 @@ from app.formats.single_pose import with_held_pose
 from app.formats.sniff import archive_names, sniff
 from app.formats.tables.reader import read_csv, read_tsv
 from app.formats.trc.reader import read_trc
+from app.kinedex_error import Place
 from app.motion.skeleton.recording import Recording
 
 

@@ -8,7 +8,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from app.errors import FormatNotSupported, KinedexError, Place, UnknownFormat
+from app.errors import FormatNotSupported, UnknownFormat
+from app.kinedex_error import KinedexError, Place
 
 READ = (
     "BVH, ASF with AMC, C3D, TRC, FBX, GLB, glTF, VRM, MVNX, NPZ, NPY, CSV of Motive or Nexus, TSV"

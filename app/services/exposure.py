@@ -5,7 +5,8 @@ from __future__ import annotations
 import socket
 
 from app.config import Settings
-from app.errors import ConfigurationError, DatabaseOutOfDate, Place
+from app.errors import ConfigurationError, DatabaseOutOfDate
+from app.kinedex_error import Place
 from app.store import identity, keys
 from app.store.store import Store
 

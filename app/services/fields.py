@@ -8,21 +8,17 @@ from __future__ import annotations
 
 import math
 import unicodedata
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
-from functools import partial
-from typing import Any
+from collections.abc import Iterable, Mapping
 
-from app.errors import BadField, Place
+from app.errors import BadField
 from app.formats.common.names import MAX_NAME_LENGTH
+from app.kinedex_error import Place
 from app.models.words.language.normalize import normalize_word, normalize_words
 from app.motion.canonical.units import METERS_PER_UNIT, SCALES
 from app.motion.canonical.up_axis import UP_AXES
 from app.motion.roles.joint_roles import JointRole
 from app.motion.roles.roles import MAX_JOINTS_OF_MIDDLE
 from app.motion.skeleton.recording import FRAME_RATES
-from app.store.clips.metadata_values import MetadataValue, tidy_number
-from app.store.clips.record import META, AnalysisHints, ClipChanges, ClipLabels
 
 MAX_TEXT = 300
 """Characters in a name or label."""
@@ -35,13 +31,6 @@ MAX_WORDS = 100
 """Words on one clip."""
 MAX_LIMIT = 1000
 """Hits of one page."""
-MAX_META_KEYS = 50
-"""Keys of the metadata of one clip."""
-MAX_META_KEY = 60
-"""Characters of a key of the metadata."""
-NOT_IN_KEYS = ".={}"
-"""Characters that no key has: a filter uses the dot, a command the equals sign, and a pattern of
-paths the braces."""
 MAX_KEYPOSES = 10_000
 """Largest number of annotated keyposes of one clip: three hours of dancing."""
 TEMPI = (20.0, 400.0)
@@ -95,41 +84,9 @@ def queried_words(value: Iterable[str]) -> tuple[str, ...]:
     return texts
 
 
-def metadata(value: Mapping[str, Any] | None) -> dict[str, MetadataValue | None] | None:
-    """Metadata: checked keys, each with a string, a number, a boolean or None (no value)."""
-    if value is None:
-        return None
-    if not isinstance(value, Mapping):
-        raise bad_field("metadata", "must be an object: values by key")
-    if len(value) > MAX_META_KEYS:
-        raise bad_field("metadata", f"must not have more than {MAX_META_KEYS} keys")
-    return {metadata_key(key): _metadata_value(key, one) for key, one in value.items()}
-
-
-def metadata_key(key: str) -> str:
-    """A key of the metadata in Unicode's NFC form, without surrounding spaces."""
-    tidy = text("metadata", key) or ""
-    if not tidy or len(tidy) > MAX_META_KEY:
-        raise bad_field("metadata", f"a key must have 1 to {MAX_META_KEY} characters: {tidy!r}")
-    if any(c in tidy for c in NOT_IN_KEYS):
-        raise bad_field(META + tidy, f"a key must not hold any of {' '.join(NOT_IN_KEYS)}")
-    if tidy.casefold() in RESERVED_KEYS:
-        raise bad_field(META + tidy, "is the name of a field of a clip, so it cannot be a key")
-    return tidy
-
-
-def _metadata_value(key: str, value: Any) -> MetadataValue | None:
-    if value is None or isinstance(value, bool):
-        return value
-    if isinstance(value, int | float):
-        number = _number(META + key, value)
-        return None if number is None else tidy_number(number)
-    return text(META + key, value)
-
-
 def frame_rate(value: float | str | None) -> float | None:
     """A frame rate in Hz, within FRAME_RATES; an empty string is None."""
-    number = _number("frame_rate", value)
+    number = parsed_number("frame_rate", value)
     lowest, highest = FRAME_RATES
     if number is not None and not lowest <= number <= highest:
         raise bad_field("frame_rate", f"must be from {lowest:g} to {highest:g} Hz")
@@ -141,7 +98,7 @@ def metres_per_unit(value: float | str | None) -> float | None:
     if isinstance(value, str) and value.strip().lower() in METERS_PER_UNIT:
         return METERS_PER_UNIT[value.strip().lower()]
     try:
-        number = _number("unit", value)
+        number = parsed_number("unit", value)
     except BadField as problem:
         names = ", ".join(METERS_PER_UNIT)
         raise bad_field("unit", f"must be one of {names}, or meters per unit") from problem
@@ -192,7 +149,7 @@ def keyposes(
     parts = value.split() if isinstance(value, str) else list(value)
     if len(parts) > MAX_KEYPOSES:
         raise bad_field(field, f"must not be more than {MAX_KEYPOSES}")
-    times = sorted({time for part in parts if (time := _number(field, part)) is not None})
+    times = sorted({time for part in parts if (time := parsed_number(field, part)) is not None})
     if times and times[0] < 0:
         raise bad_field(field, "must not be before the clip's start")
     return tuple(times)
@@ -200,7 +157,7 @@ def keyposes(
 
 def tempo(value: float | str | None) -> float | None:
     """Beats per minute, within TEMPI; an empty string is None."""
-    number = _number("tempo", value)
+    number = parsed_number("tempo", value)
     if number is not None and not TEMPI[0] <= number <= TEMPI[1]:
         raise bad_field("tempo", f"must be from {TEMPI[0]:g} to {TEMPI[1]:g} beats per minute")
     return number
@@ -209,7 +166,7 @@ def tempo(value: float | str | None) -> float | None:
 def audio_offset(value: float | str | None) -> float | None:
     """Seconds from the start of the motion to the start of its recording; negative if the
     recording starts first."""
-    number = _number("audio_offset", value)
+    number = parsed_number("audio_offset", value)
     if number is not None and abs(number) > MAX_OFFSET:
         raise bad_field("audio_offset", f"must be within {MAX_OFFSET:g} s of the motion's start")
     return number
@@ -220,7 +177,8 @@ def beats(value: str | Iterable[float] | None) -> tuple[float, ...] | None:
     return keyposes(value, "beats") or None
 
 
-def _number(field: str, value: float | str | None) -> float | None:
+def parsed_number(field: str, value: float | str | None) -> float | None:
+    """The value as a number; an empty string is None. Raises BadField."""
     if value is None or (isinstance(value, str) and not value.strip()):
         return None
     if isinstance(value, bool):  # `float(True)` is 1.0, but JSON's true is not a number
@@ -263,90 +221,3 @@ def limit(value: int) -> int:
     if not 1 <= value <= MAX_LIMIT:
         raise bad_field("limit", f"must be from 1 to {MAX_LIMIT}")
     return value
-
-
-Check = Callable[[Any], Any]
-
-LABELS: Mapping[str, Check] = {
-    "name": partial(text, "name"),
-    "person": partial(text, "person"),
-    "task": partial(text, "task"),
-    "words": lambda value: words(value) or (),
-    "license": partial(text, "license"),
-    "source": partial(text, "source"),
-    "metadata": metadata,
-}
-"""The check of each field of `ClipLabels`. Clients use the same names."""
-
-UNIT = "unit"
-HINTS: Mapping[str, Check] = {
-    "frame_rate": frame_rate,
-    UNIT: metres_per_unit,
-    "up_axis": up_axis,
-    "roles": roles,
-    "stack": partial(text, "stack"),
-    "audio_offset": audio_offset,
-    "tempo": tempo,
-    "beats": beats,
-}
-"""The check of each hint, by the name that clients use."""
-
-_STORED_NAMES = {UNIT: "metres_per_unit"}
-"""The fields of `AnalysisHints` for which clients use another name."""
-_CLIENT_NAMES = {stored: name for name, stored in _STORED_NAMES.items()}
-
-RESERVED_KEYS = frozenset({*LABELS, *HINTS, "path", "fps", "keyposes", "audio", "word", "folder"})
-"""Names that no key of the metadata has, in upper or lower case: a column of a manifest with such a
-name is the field itself."""
-
-
-def stored_name(name: str) -> str:
-    """The name in the store of a label or hint of clients."""
-    return _STORED_NAMES.get(name, name)
-
-
-def client_name(stored: str) -> str:
-    """The name that clients use for a stored label or hint."""
-    return _CLIENT_NAMES.get(stored, stored)
-
-
-def checked(values: Mapping[str, Any]) -> ClipChanges:
-    """A client's labels and hints in their normal form, by the names of the store.
-
-    values: by the names of LABELS and HINTS; None and empty strings mean that there is no value.
-    Raises BadField for a bad value or an unknown name.
-    """
-    changes: dict[str, Any] = {}
-    for field, value in values.items():
-        check = LABELS.get(field) or HINTS.get(field)
-        if check is None:
-            raise bad_field(field, "is no label or hint of a clip")
-        changes[stored_name(field)] = check(value)
-    return changes
-
-
-@dataclass(frozen=True, slots=True)
-class SentValues:
-    """The labels and hints that came with a file; sent: their names, as in `NewClip.sent`."""
-
-    labels: ClipLabels
-    hints: AnalysisHints
-    sent: frozenset[str]
-
-
-def sent_values(values: Mapping[str, Any], default_name: str) -> SentValues:
-    """The labels and hints that come with a file, checked by `checked`.
-
-    default_name: the clip's name if the values have none. Raises BadField.
-    """
-    labels = checked({name: value for name, value in values.items() if name not in HINTS})
-    hints = checked({name: value for name, value in values.items() if name in HINTS})
-    keys: dict[str, MetadataValue | None] = labels.get("metadata") or {}
-    names = {*labels, *hints} - {"metadata"} - ({"name"} if not labels.get("name") else set())
-    labels = {**labels, "name": labels.get("name") or default_name}
-    labels["metadata"] = {key: value for key, value in keys.items() if value is not None}
-    return SentValues(
-        ClipLabels(**labels),
-        AnalysisHints(**hints),
-        frozenset(names | {META + key for key in keys}),
-    )

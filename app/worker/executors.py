@@ -7,7 +7,7 @@ import threading
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
-from app.errors import KinedexError
+from app.kinedex_error import KinedexError
 from app.logs import level_of_process
 from app.services.children.pool import ChildPool
 from app.services.children.processes import log_like_parent

@@ -13,7 +13,8 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from app.analysis.analyze import Analysis
-from app.errors import AnalysisInterrupted, Canceled, ClipNotFound, KinedexError, StorageError
+from app.errors import AnalysisInterrupted, Canceled, ClipNotFound, StorageError
+from app.kinedex_error import KinedexError
 from app.services.children.child import ChildDied, ChildEnded
 from app.services.clips import ingest
 from app.services.library.analysis_pool import AnalysisPool

@@ -314,7 +314,7 @@ def test_a_body_over_the_limit_is_refused_while_it_streams(idle_service: Live) -
 
 def test_a_client_with_expect_100_continue_need_not_send_the_body(idle_service: Live) -> None:
     address = urlsplit(idle_service.url)
-    with socket.create_connection((address.hostname or "", address.port or 0), timeout=10) as line:
+    with socket.create_connection((address.hostname or "", address.port or 0), timeout=300) as line:
         line.sendall(
             b"POST /v1/clips HTTP/1.1\r\nHost: localhost\r\nContent-Type: multipart/form-data\r\n"
             b"Content-Length: 99999999999\r\nExpect: 100-continue\r\n\r\n"

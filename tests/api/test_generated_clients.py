@@ -68,9 +68,9 @@ def test_openapi_typescript_makes_types_that_compile(description: Path, tmp_path
         pytest.skip("THE WEB TOOLS ARE NOT INSTALLED: run `make install`")
     types = tmp_path / "schema.d.ts"
     make = [TOOLS / "openapi-typescript", description, "--output", types]
-    subprocess.run(make, check=True, capture_output=True, timeout=120)
+    subprocess.run(make, check=True, capture_output=True, timeout=300)
     check = [TOOLS / "tsc", "--noEmit", "--strict", types]
-    found = subprocess.run(check, capture_output=True, text=True, timeout=120, check=False)
+    found = subprocess.run(check, capture_output=True, text=True, timeout=300, check=False)
     assert found.returncode == 0, found.stdout
     assert "list_clips" in types.read_text()
 

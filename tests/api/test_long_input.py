@@ -9,7 +9,7 @@ from typing import Any
 import httpx2
 import pytest
 
-from app.errors import MAX_DETAIL, MAX_STORED_PLACES, KinedexError, Place
+from app.kinedex_error import MAX_DETAIL, MAX_STORED_PLACES, KinedexError, Place
 from tests.api.conftest import assert_problem
 from tests.live import Live
 

@@ -155,6 +155,6 @@ def _shot(browser: str, url: str, milliseconds: int, target: Path) -> bytes:
             "--window-size=360,300", f"--virtual-time-budget={milliseconds}",
             f"--screenshot={target}", url,
         ],
-        check=True, timeout=60, capture_output=True,
+        check=True, timeout=300, capture_output=True,
     )  # fmt: skip
     return target.read_bytes()

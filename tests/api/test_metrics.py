@@ -12,7 +12,7 @@ import yaml
 from prometheus_client import Metric
 from prometheus_client.parser import text_string_to_metric_families
 
-from tests.live import Live, wait_until
+from tests.live import NET_S, Live, wait_until
 
 DOCKER = Path(__file__).resolve().parents[2] / "docker"
 _NAME = re.compile(r"\b(?:kinedex|http|process)_\w+")
@@ -43,13 +43,13 @@ def ready_clips(client: httpx2.Client) -> int:
 
 def test_the_state_of_a_library_is_shown(demo_service: Live) -> None:
     with demo_service.client() as client:
-        wait_until(lambda: values(families(client)["kinedex_workers"])[("alive",)], 30.0)
+        wait_until(lambda: values(families(client)["kinedex_workers"])[("alive",)], NET_S)
         found = families(client)
         clips = ready_clips(client)
         # The index catches up at a search; before, it may hold clips that other tests deleted.
         (any_clip,) = client.get("/v1/clips", params={"state": "ready", "limit": 1}).json()["items"]
         assert client.post("/v1/search/motion", json={"clip_id": any_clip["id"]}).is_success
-        wait_until(lambda: values(families(client)["kinedex_index_clips"])[()] == clips, 30.0)
+        wait_until(lambda: values(families(client)["kinedex_index_clips"])[()] == clips, NET_S)
     assert values(found["kinedex_clips"])[("ready",)] == clips > 0
     index = values(found["kinedex_index_version"])[()]
     assert 0 <= index <= values(found["kinedex_library_version"])[()]

@@ -22,7 +22,7 @@ Message = dict[str, Any]
 
 
 def run(test: Callable[[], Coroutine[Any, Any, None]]) -> None:
-    asyncio.run(asyncio.wait_for(test(), 30.0))
+    asyncio.run(asyncio.wait_for(test(), 300))
 
 
 def one_slot(seconds: float = 60.0, streams: int = 4) -> Gates:

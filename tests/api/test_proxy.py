@@ -27,7 +27,7 @@ def proxied(live: Live, headers: dict[str, str]) -> Iterator[str]:
 
     class Proxy(BaseHTTPRequestHandler):
         def do_GET(self) -> None:
-            line = http.client.HTTPConnection(target, timeout=30)
+            line = http.client.HTTPConnection(target, timeout=300)
             sent = dict(self.headers.items()) | headers
             line.request("GET", self.path.removeprefix(PREFIX), headers=sent)
             answer = line.getresponse()
@@ -55,7 +55,7 @@ def proxied(live: Live, headers: dict[str, str]) -> Iterator[str]:
 
 
 def get(address: str, path: str, **headers: str) -> httpx2.Response:
-    return httpx2.get(address + path, headers=headers, trust_env=False, verify=NO_TLS, timeout=30)
+    return httpx2.get(address + path, headers=headers, trust_env=False, verify=NO_TLS, timeout=300)
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ from typing import Any
 
 from app.api.schemas.clips import Clip, ClipCreated, ClipForm, ClipList, ClipPatch
 from app.api.schemas.jobs import Job
-from app.services import fields
+from app.services import clip_fields
 from app.services.clips.catalogue import PATCHABLE, Created
 from app.services.imports.manifest import COLUMNS
 from app.store.clips.record import (
@@ -107,10 +107,10 @@ def test_answers_with_other_answers_inside_are_built_at_once() -> None:
 def test_every_label_and_hint_has_its_check_its_form_field_and_its_column() -> None:
     labels = {field.name for field in dataclasses.fields(ClipLabels)}
     hints = {field.name for field in dataclasses.fields(AnalysisHints)}
-    assert fields.LABELS.keys() == labels
-    assert {"metres_per_unit" if one == "unit" else one for one in fields.HINTS} == hints
+    assert clip_fields.LABELS.keys() == labels
+    assert {"metres_per_unit" if one == "unit" else one for one in clip_fields.HINTS} == hints
     of_a_clip = ClipForm.model_fields.keys() - {"path", "on_conflict"}
-    assert of_a_clip == fields.LABELS.keys() | fields.HINTS.keys()
+    assert of_a_clip == clip_fields.LABELS.keys() | clip_fields.HINTS.keys()
     assert ClipPatch.model_fields.keys() == set(PATCHABLE)
     assert labels < Clip.model_fields.keys()
     not_in_manifests = {"roles", "stack", "metadata"}

@@ -16,7 +16,7 @@ from app.store import keys
 from app.store.key_role import KeyRole
 from app.store.store import Store
 from tests.api.conftest import assert_problem
-from tests.live import Live, serve, wait_until
+from tests.live import NET_S, Live, serve, wait_until
 
 METHODS = {"get", "post", "put", "patch", "delete"}
 
@@ -189,7 +189,7 @@ def test_the_log_names_the_client_and_the_key(locked: tuple[Live, dict[KeyRole, 
         lines = [json.loads(line) for line in live.log.read_text().splitlines()]
         return [line for line in lines if line.get("path") == "/v1/clips/named-in-the-log"]
 
-    (line,) = wait_until(logged, 60.0)
+    (line,) = wait_until(logged, NET_S)
     assert (line["client"], line["key_id"]) == ("127.0.0.1", secret.split("_")[1])
 
 

@@ -21,7 +21,7 @@ from app.services.webhooks.sending import signed
 from app.store.key_role import KeyRole
 from tests.api.conftest import assert_problem
 from tests.api.test_service import _make_keys
-from tests.live import Live, serve, wait_until
+from tests.live import NET_S, Live, serve, wait_until
 from tests.receivers import receiving
 
 GOOD_URLS = ["https://example.com/x?y=z", "https://10.0.0.1:8443/", "http://localhost:9/"]
@@ -94,9 +94,9 @@ def test_the_end_of_a_job_arrives_signed(tmp_path: Path) -> None:
         with live.client() as client:
             webhook = client.post("/v1/webhooks", json={"url": receiver.url}).json()
             job = live.upload(clip).json()["job"]
-            wait_until(lambda: len(receiver.received) >= 2, 120.0)
+            wait_until(lambda: len(receiver.received) >= 2, NET_S)
             path = f"/v1/webhooks/{webhook['id']}"
-            wait_until(lambda: client.get(path).json()["failures"] == 0, 30.0)
+            wait_until(lambda: client.get(path).json()["failures"] == 0, NET_S)
             last = client.get(path).json()["last_delivery"]
     (first, body), (second, again) = receiver.received[:2]
     event = json.loads(body)
@@ -119,7 +119,7 @@ def test_an_event_survives_the_death_of_the_worker(tmp_path: Path) -> None:
             live.wait_for_job(job["id"])
             worker.send_signal(signal.SIGKILL)
         with _worker(live):
-            wait_until(lambda: receiver.received, 120.0)
+            wait_until(lambda: receiver.received, NET_S)
         assert json.loads(receiver.received[0][1])["data"]["id"] == job["id"]
         assert client.get(f"/v1/webhooks/{created['id']}").json()["id"] == created["id"]
 
@@ -133,4 +133,4 @@ def _worker(live: Live) -> Iterator[subprocess.Popen[bytes]]:
         process = subprocess.Popen(command, env=environment, stdout=log, stderr=log)
         yield process
         process.terminate()
-        process.wait(30)
+        process.wait(300)

@@ -20,9 +20,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.errors import KinedexError
 from app.formats.read import read_recording
 from app.formats.sniff import sniff
+from app.kinedex_error import KinedexError
 from app.motion.canonical.canonical import canonicalize
 from app.motion.motion import Motion
 from tests.bench.page import Section

@@ -12,7 +12,7 @@ from app.cli.backup import exit_on_sigterm
 from app.demo import DemoClip
 from app.store.upkeep.backup import DATABASE, FILES
 from tests.cli.conftest import Kinedex
-from tests.live import serve, wait_until
+from tests.live import NET_S, serve, wait_until
 
 
 def test_a_copy_is_a_complete_library(kinedex: Kinedex, tmp_path: Path) -> None:
@@ -97,7 +97,7 @@ def test_a_library_is_copied_while_the_api_runs(
             found: list[dict[str, Any]] = client.get("/v1/clips?state=ready").json()["items"]
             return found if len(found) == 3 else []
 
-        restored = wait_until(ready, 60.0)  # clips that waited in the library wait in its copy
+        restored = wait_until(ready, NET_S)  # clips that waited in the library wait in its copy
         assert client.get("/v1/clips?limit=100&state=queued").json()["items"] == []
         contents = {client.get(f"/v1/clips/{clip['id']}/file").content for clip in restored}
         assert contents == {clip.content for clip in clips[:3]}

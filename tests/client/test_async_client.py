@@ -36,7 +36,7 @@ def test_lists_searches_and_uploads(demo_service: Live, take: DemoClip) -> None:
             )
             assert sent[-1] == len(take.content)
             assert created.job is not None
-            job = await client.jobs.wait(created.job.id, timeout=120)
+            job = await client.jobs.wait(created.job.id, timeout=300)
             assert [one.state async for one in client.jobs.follow(job.id)] == ["succeeded"]
             await client.clips.delete(created.clip.id)
             with pytest.raises(KinedexError, match="no clip"):

@@ -84,7 +84,7 @@ def test_an_upload_shows_its_progress_and_its_job_can_be_awaited(
     assert created.job is not None
     states = []
     job = client.jobs.wait(
-        created.job.id, timeout=120, on_progress=lambda job: states.append(job.state)
+        created.job.id, timeout=300, on_progress=lambda job: states.append(job.state)
     )
     assert job.state == states[-1] == "succeeded"
     assert [job.state for job in client.jobs.follow(job.id)] == ["succeeded"]
@@ -101,7 +101,7 @@ def test_an_archive_is_imported_and_its_failures_are_listed(client: Kinedex) -> 
     archive = io.BytesIO()
     with zipfile.ZipFile(archive, "w") as zipped:
         zipped.writestr("broken.bvh", "HIERARCHY\n")
-    job = client.jobs.wait(client.clips.upload_archive(archive.getvalue()).job.id, timeout=120)
+    job = client.jobs.wait(client.clips.upload_archive(archive.getvalue()).job.id, timeout=300)
     (failed,) = client.jobs.files(job.id, outcome="failed")
     assert failed.error is not None
     assert failed.error.code == "unreadable"
@@ -112,7 +112,7 @@ def test_a_job_that_failed_raises_its_problem(client: Kinedex) -> None:
     created = client.clips.upload(("broken.bvh", b"HIERARCHY\nROOT hips\n"))
     assert created.job is not None
     with pytest.raises(JobFailed) as failed:
-        client.jobs.wait(created.job.id, timeout=120)
+        client.jobs.wait(created.job.id, timeout=300)
     assert (failed.value.job_id, failed.value.code) == (created.job.id, "unreadable")
     assert client.jobs.wait(created.job.id, check=False).state == "failed"
     client.clips.delete(created.clip.id)

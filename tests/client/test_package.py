@@ -24,5 +24,5 @@ except kinedex.PackageNeeded as needed:
 
 def test_it_is_imported_without_the_server_and_without_numpy() -> None:
     command = [sys.executable, "-c", WITHOUT_SERVER]
-    ended = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60)
+    ended = subprocess.run(command, capture_output=True, text=True, check=True, timeout=300)
     assert ended.stdout == "An array needs numpy: pip install numpy\n"

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from app.errors import KinedexError
+from app.kinedex_error import KinedexError
 from app.motion.skeleton.recording import Recording
 from tests.cpu_time import cpu_seconds_below
 

@@ -12,9 +12,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.errors import EmptyFile, FormatNotSupported, KinedexError, UnknownFormat
+from app.errors import EmptyFile, FormatNotSupported, UnknownFormat
 from app.formats.read import READERS, read_recording
 from app.formats.sniff import HEAD_BYTES, TAIL_BYTES, sniff
+from app.kinedex_error import KinedexError
 from tests.formats.samples import bvh
 from tests.real_clips import manifest, real_clips
 

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from app.errors import KinedexError
 from app.formats.read import read_recording
+from app.kinedex_error import KinedexError
 from app.motion.canonical.canonical import canonicalize
 from app.motion.canonical.units import stature
 from app.motion.motion import Motion

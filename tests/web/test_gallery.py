@@ -13,7 +13,7 @@ import pytest
 from playwright.sync_api import Browser, Locator, Page, Route, expect
 
 from app.demo import demo_clips
-from tests.live import Live, serve, wait_until
+from tests.live import NET_S, Live, serve, wait_until
 from tests.web.accessibility import serious_faults
 from tests.web.browser import LOOKS, Scheme, opened
 
@@ -207,6 +207,6 @@ def test_clips_are_handed_in_labeled_and_deleted(
         tray.get_by_role("button", name="Delete").click()
         expect(cards(page)).to_have_count(2)
         page.get_by_role("button", name="Dismiss").last.click()
-        wait_until(lambda: len(clips_of(changed)) == 2, 60)
+        wait_until(lambda: len(clips_of(changed)) == 2, NET_S)
         page.reload()
         expect(cards(page)).to_have_count(2)

@@ -18,7 +18,7 @@ from app.store.clips.record import ClipState
 from app.store.jobs.record import JobState
 from app.worker.sweeps import Sweeps
 from tests.libraries import settings_for, upload, work
-from tests.live import wait_until
+from tests.live import NET_S, wait_until
 from tests.zip_archives import zip_archive
 
 
@@ -90,6 +90,6 @@ def test_the_worker_sweeps_again_and_again(lib: Library, monkeypatch: pytest.Mon
     try:
         with lib.store.files.stage(io.BytesIO(b"kept, but never committed")) as staged:
             staged.keep()
-        wait_until(lambda: list(lib.store.files.quarantine) == [staged.sha256], 30.0)
+        wait_until(lambda: list(lib.store.files.quarantine) == [staged.sha256], NET_S)
     finally:
         sweeps.end()

@@ -15,7 +15,8 @@ import numpy as np
 
 from app.analysis.gait.events import MAX_STRIDE_TIME, MIN_STRIDE_TIME, FootEvents, foot_events
 from app.analysis.gait.walk import SIDES, Walk
-from app.errors import NoGait, Place
+from app.errors import NoGait
+from app.kinedex_error import Place
 from app.numerics.arrays import FloatArray
 
 MIN_STRIDE_LENGTH = 0.3

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.analysis.descriptors.joint_angles import filtered
-from app.errors import NoGait, Place
+from app.errors import NoGait
+from app.kinedex_error import Place
 from app.motion.motion import Motion
 from app.motion.posing.posed_start import without_posed_start
 from app.motion.roles.joint_roles import JointRole

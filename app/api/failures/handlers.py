@@ -31,12 +31,11 @@ from app.errors import (
     Conflict,
     DeadlineExceeded,
     DiskFull,
-    KinedexError,
     ModelBeingFitted,
     NotFound,
-    Place,
     Unauthorized,
 )
+from app.kinedex_error import KinedexError, Place
 
 log = logging.getLogger(__name__)
 

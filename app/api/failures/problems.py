@@ -13,7 +13,7 @@ from typing import Any
 from pydantic_core import ErrorDetails
 
 from app import errors
-from app.errors import KinedexError, Place
+from app.kinedex_error import KinedexError, Place
 
 MEDIA_TYPE = "application/problem+json"
 TYPE_PREFIX = "urn:kinedex:problem:"

@@ -18,7 +18,7 @@ from app.api.guard.callers import find_caller, given_key
 from app.api.guard.own_address import refuse_other_pages, refuse_other_sites
 from app.api.guard.paths import path_of
 from app.api.guard.sessions import COOKIE, Sessions
-from app.errors import KinedexError
+from app.kinedex_error import KinedexError
 from app.services.library.library import Library
 
 SIGN_IN = ("POST", "/v1/session")

@@ -26,7 +26,8 @@ from app.api.failures.response import respond
 from app.api.guard.callers import Caller
 from app.api.guard.content import ContentDigest
 from app.api.guard.paths import path_of
-from app.errors import BadField, IdempotencyKeyReused, KinedexError, Place, StorageError
+from app.errors import BadField, IdempotencyKeyReused, StorageError
+from app.kinedex_error import KinedexError, Place
 from app.services.library.library import Library
 from app.store import keyed_calls
 from app.store.database.engine import Tx

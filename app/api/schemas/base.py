@@ -18,7 +18,7 @@ from pydantic import (
 from app.motion.roles.joint_roles import JointRole
 from app.motion.roles.roles import MAX_JOINTS_OF_MIDDLE
 from app.search.index.filters import MAX_LABEL_LENGTH, MAX_LABELS
-from app.services import fields
+from app.services import clip_fields, fields
 from app.services.views.frame_rates import MAX_FPS, MIN_FPS
 from app.store.database.cursor_codec import MAX_CURSOR_LENGTH
 from app.store.database.totals import MAX_EXACT
@@ -88,19 +88,19 @@ AnyOf = Annotated[
 """A label, or a list of accepted labels."""
 
 Label = Annotated[str, Field(max_length=fields.MAX_TEXT)]
-"""A name or label of a clip. The service checks further rules (`app.services.fields`)."""
+"""A name or label of a clip. The service checks further rules (`app.services.clip_fields`)."""
 
 Path = Annotated[str, Field(max_length=fields.MAX_PATH), AfterValidator(_without_control)]
 """A path of a file or folder, with / between its parts."""
 
-_MetadataKey = Annotated[str, Field(min_length=1, max_length=fields.MAX_META_KEY)]
+_MetadataKey = Annotated[str, Field(min_length=1, max_length=clip_fields.MAX_META_KEY)]
 Metadata = dict[str, bool | int | float | str]
 """Metadata of a clip as it is shown."""
 MetadataChanges = Annotated[
     dict[_MetadataKey, StrictBool | StrictInt | StrictFloat | Label | None],
-    Field(max_length=fields.MAX_META_KEYS, examples=[{"condition": "fatigued", "age": 30}]),
+    Field(max_length=clip_fields.MAX_META_KEYS, examples=[{"condition": "fatigued", "age": 30}]),
 ]
-"""Metadata that a client sends. The service checks further rules (`app.services.fields`)."""
+"""Metadata that a client sends. The service checks further rules (`app.services.clip_fields`)."""
 
 Words = Annotated[list[Label], Field(max_length=fields.MAX_WORDS)]
 """The words of one clip."""

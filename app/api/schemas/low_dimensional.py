@@ -8,7 +8,8 @@ from app.analysis.low_dimensional.eigen_motion import Basis
 from app.analysis.low_dimensional.plausibility import Fault, Implausible, Plausibility
 from app.api.schemas.base import Fps, Incoming, Outgoing, Seconds
 from app.api.schemas.views import Motion, Point, plain
-from app.errors import BadField, Place
+from app.errors import BadField
+from app.kinedex_error import Place
 from app.motion.frame.body_frame import ANALYSIS_RATE
 from app.motion.roles.joint_roles import JointRole
 from app.services.views.low_dimensional import (

@@ -15,7 +15,8 @@ import typer
 from app.cli.checks.finding import Finding, fine, note, problem
 from app.cli.checks.queue import check_disk, check_queue
 from app.cli.settings import settings_of
-from app.errors import ConfigurationError, KinedexError
+from app.errors import ConfigurationError
+from app.kinedex_error import KinedexError
 
 if TYPE_CHECKING:
     from app.config import Settings

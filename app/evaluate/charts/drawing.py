@@ -12,7 +12,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
-from app.errors import BadField, ExtraNeeded, Place
+from app.errors import BadField, ExtraNeeded
+from app.kinedex_error import Place
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

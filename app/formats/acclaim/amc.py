@@ -12,12 +12,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.errors import Place, SkeletonNeeded, Unreadable
+from app.errors import SkeletonNeeded, Unreadable
 from app.formats.acclaim.amc_frames import AmcFrames, read_amc_frames
 from app.formats.acclaim.asf import AcclaimSkeleton, read_asf
 from app.formats.acclaim.frame_order import USUAL_RATE, in_number_order
 from app.formats.common.lines import with_plain_newlines
 from app.formats.common.world_positions import solve
+from app.kinedex_error import Place
 from app.motion.skeleton.recording import Recording
 from app.motion.skeleton.rotations import (
     conjugate,

@@ -13,8 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from app.errors import EmptyFile, ExtraNeeded, Place, TooLarge, UnknownFormat, Unreadable
+from app.errors import EmptyFile, ExtraNeeded, TooLarge, UnknownFormat, Unreadable
 from app.formats.audio.riff import declared_bytes
+from app.kinedex_error import Place
 from app.numerics.arrays import FloatArray
 
 FORMATS = "WAV, FLAC, OGG or MP3"

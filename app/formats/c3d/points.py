@@ -11,13 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.errors import FormatNotSupported, KinedexError, Place
+from app.errors import FormatNotSupported
 from app.formats.c3d.frame_count import declared_counts, frame_count
 from app.formats.c3d.header import Header, read_header, with_true_analog
 from app.formats.c3d.parameters import BLOCK, Numbers, Parameters, read_parameters
 from app.formats.common.failures import too_large, unreadable_byte
 from app.formats.common.numbers import MAX_MAGNITUDE
 from app.formats.common.world_positions import MAX_JOINT_FRAMES
+from app.kinedex_error import KinedexError, Place
 from app.motion.skeleton.recording import FRAME_RATES, Caution
 from app.numerics.arrays import FloatArray
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from app.errors import Place, TooLarge, Unreadable
+from app.errors import TooLarge, Unreadable
+from app.kinedex_error import Place
 
 
 def unreadable_at(location: str, message: str) -> Unreadable:

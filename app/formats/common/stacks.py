@@ -7,7 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.errors import BadField, Place
+from app.errors import BadField
+from app.kinedex_error import Place
 from app.motion.skeleton.recording import Caution
 
 MAX_NAMES_SHOWN = 100

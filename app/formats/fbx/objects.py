@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.errors import FormatNotSupported, Place, Unreadable
+from app.errors import FormatNotSupported, Unreadable
 from app.formats.common.failures import unreadable_at
 from app.formats.common.names import MAX_NAME_LENGTH
 from app.formats.fbx.tree import Record
+from app.kinedex_error import Place
 
 Numbers = tuple[float, ...]
 _BLOCKS = (("Properties70", "P", 3), ("Properties60", "Property", 2))

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from app.errors import FormatNotSupported, Place
+from app.errors import FormatNotSupported
 from app.formats.common.failures import unreadable_byte
 from app.formats.fbx.records import MAGIC, FbxFile
 from app.formats.fbx.text import TextFile
 from app.formats.fbx.tree import RecordFile
+from app.kinedex_error import Place
 
 MIN_VERSION, MAX_VERSION = 6000, 7999
 _BIG_ENDIAN_AT = 22

@@ -9,9 +9,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from app.errors import FormatNotSupported, Place, Unreadable
+from app.errors import FormatNotSupported, Unreadable
 from app.formats.common.failures import too_large, unreadable_at
 from app.formats.gltf.container import Container, Json
+from app.kinedex_error import Place
 from app.numerics.arrays import FloatArray
 
 MAX_ELEMENTS = 20_000_000

@@ -13,10 +13,11 @@ import struct
 from dataclasses import dataclass, field
 from typing import Any
 
-from app.errors import FormatNotSupported, Place
+from app.errors import FormatNotSupported
 from app.formats.common.failures import unreadable_at, unreadable_byte
 from app.formats.common.json_text import parse_json
 from app.formats.common.numbers import excerpt
+from app.kinedex_error import Place
 
 MAGIC = b"glTF"
 _HEADER = struct.Struct("<4sII")

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from app.errors import FormatNotSupported, Place
+from app.errors import FormatNotSupported
 from app.formats.common.failures import too_large, unreadable_at
 from app.formats.common.json_text import parse_json
 from app.formats.common.numbers import MAX_MAGNITUDE
@@ -26,6 +26,7 @@ from app.formats.markers.recording import recording_of_markers
 from app.formats.markers.tracks import Tracks
 from app.formats.npz.joint_layouts import layout_of
 from app.formats.tables.cells import rate_of_times
+from app.kinedex_error import Place
 from app.motion.skeleton.recording import FRAME_RATES, Caution, Recording
 from app.numerics.arrays import FloatArray
 

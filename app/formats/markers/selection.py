@@ -11,9 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.errors import Place, Unreadable
+from app.errors import Unreadable
 from app.formats.common.names import without_common_prefix
 from app.formats.markers.tracks import Tracks
+from app.kinedex_error import Place
 from app.motion.roles.marker_names import is_marker, markers_by_place, subject_and_label
 from app.motion.skeleton.occlusion import Gap
 from app.motion.skeleton.recording import Caution

@@ -21,8 +21,9 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.errors import Place, TooLarge
+from app.errors import TooLarge
 from app.formats.common.failures import too_large, unreadable_at
+from app.kinedex_error import Place
 
 MAX_ARRAY_BYTES = 480_000_000
 """The size of the largest array: 20 million joints times frames in float64."""

@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.errors import Place, Unreadable
+from app.errors import Unreadable
 from app.formats.common.failures import too_large, unreadable_at
 from app.formats.common.joint_trees import in_tree_order, parents_of
 from app.formats.common.limits import MAX_JOINTS
@@ -36,6 +36,7 @@ from app.formats.npz.arrays import Archive, numbers, read_npy, texts
 from app.formats.npz.joint_layouts import layout_of
 from app.formats.npz.keys import NamedArrays
 from app.formats.npz.smpl import read_smpl
+from app.kinedex_error import Place
 from app.motion.canonical.units import METERS_PER_UNIT
 from app.motion.skeleton.occlusion import fill_gaps
 from app.motion.skeleton.recording import Caution, Recording

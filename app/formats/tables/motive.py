@@ -10,12 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from app.errors import FormatNotSupported, Place
+from app.errors import FormatNotSupported
 from app.formats.common.failures import unreadable_line
 from app.formats.common.names import without_common_prefix
 from app.formats.common.units import named_unit
 from app.formats.tables.cells import cells_of
 from app.formats.tables.layout import Column, Layout, number_in, positions_in
+from app.kinedex_error import Place
 
 MAX_HEADER_LINES = 20
 MIN_BONES = 8

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import re
 
-from app.errors import FormatNotSupported, Place
+from app.errors import FormatNotSupported
 from app.formats.common.failures import unreadable_line
 from app.formats.tables.cells import cells_of
 from app.formats.tables.layout import Column, Layout, number_in
+from app.kinedex_error import Place
 
 METERS_PER_MILLIMETER = 0.001
 MAX_HEADER_LINES = 100

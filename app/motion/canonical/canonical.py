@@ -8,7 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.errors import BadField, Place, Unreadable
+from app.errors import BadField, Unreadable
+from app.kinedex_error import Place
 from app.motion.canonical.extent import check_extent
 from app.motion.canonical.frame_rate import judge_frame_rate
 from app.motion.canonical.part_bodies import (

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.errors import BadContent, NotHuman, Place
+from app.errors import BadContent, NotHuman
+from app.kinedex_error import Place
 from app.motion.frame.body_frame import ANALYSIS_RATE, body_length
 from app.motion.motion import Motion
 from app.motion.roles.joint_roles import JointRole

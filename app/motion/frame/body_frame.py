@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.errors import NotHuman, Place, TooShort
+from app.errors import NotHuman, TooShort
+from app.kinedex_error import Place
 from app.motion.motion import Motion
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.skeleton.resampling import resample

@@ -15,7 +15,8 @@ from functools import cached_property
 
 import numpy as np
 
-from app.errors import NotHuman, Place
+from app.errors import NotHuman
+from app.kinedex_error import Place
 from app.motion.motion import Motion
 from app.motion.plausibility.animal_names import Names, named_signs
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from app.errors import NotHuman, Place
+from app.errors import NotHuman
+from app.kinedex_error import Place
 from app.motion.roles.joint_roles import JointRole
 
 MAX_NAMES = 80

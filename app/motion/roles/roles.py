@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from app.errors import BadField, Place
+from app.errors import BadField
+from app.kinedex_error import Place
 from app.motion.roles.joint_names import joints_by_name, roles_by_name, side_and_word
 from app.motion.roles.joint_roles import JointRole
 from app.motion.roles.named_limbs import limbs_by_name

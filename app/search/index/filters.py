@@ -16,7 +16,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from app.errors import BadField, Place
+from app.errors import BadField
+from app.kinedex_error import Place
 from app.models.words.language.normalize import normalize_word
 from app.store.clips.filter import ClipFilter, MetadataCondition
 from app.store.clips.metadata_values import as_text, from_cell

@@ -12,7 +12,8 @@ import hashlib
 import json
 from dataclasses import dataclass
 
-from app.errors import BadField, Place
+from app.errors import BadField
+from app.kinedex_error import Place
 from app.store.database import cursor_codec
 from app.store.database.cursor_codec import as_count, as_number, as_text
 

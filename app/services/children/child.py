@@ -15,7 +15,8 @@ from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any, Self
 
-from app.errors import AnalysisCrashed, AnalysisInterrupted, KinedexError
+from app.errors import AnalysisCrashed, AnalysisInterrupted
+from app.kinedex_error import KinedexError
 from app.services.children.processes import child_context, die_with_parent, one_at_a_time
 
 START_TRIES = 5

@@ -12,7 +12,7 @@ from typing import Any, BinaryIO
 from app.errors import BadContent, EmptyFile, NotFound
 from app.formats.read import check_stack_belongs
 from app.formats.sniff import HEAD_BYTES, TAIL_BYTES, sniff
-from app.services import fields
+from app.services import clip_fields, fields
 from app.services.clips.merging import OnConflict, merge
 from app.services.clips.recordings import NewRecording, attached, stage
 from app.services.library.library import Library
@@ -42,9 +42,9 @@ WORKER_DEATHS = 30
 """How often a job is tried again after the death of its worker, without progress in between. The
 clip is seldom the cause: a child process parses its content, and `job_max_attempts` limits the
 deaths of that."""
-FIXED_HINTS = (fields.UNIT, "roles")
+FIXED_HINTS = (clip_fields.UNIT, "roles")
 """Hints that a client can give only with the file, and not change later."""
-PATCHABLE = (*fields.LABELS, *(hint for hint in fields.HINTS if hint not in FIXED_HINTS))
+PATCHABLE = (*clip_fields.LABELS, *(hint for hint in clip_fields.HINTS if hint not in FIXED_HINTS))
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,16 +85,16 @@ def create_clip(
 ) -> Created:
     """Store a file durably and queue its analysis; on return both survive kill -9.
 
-    values: the client's labels and hints, as `fields.checked` takes them; skeleton: the ASF file of
-    an AMC file; recording: a file of sound; path: where the file was in its folder. If the same
-    bytes (of motion and skeleton) are sent again, the result is the existing clip; on_conflict:
-    what happens if its labels or hints differ. That clip is queued again if it had failed, or if it
-    comes with another recording, which replaces the old one. Raises BadField, EmptyFile,
-    UnknownFormat, TooLarge, DiskFull, Conflict; then nothing is stored.
+    values: the client's labels and hints, as `clip_fields.checked` takes them; skeleton: the ASF
+    file of an AMC file; recording: a file of sound; path: where the file was in its folder. If the
+    same bytes (of motion and skeleton) are sent again, the result is the existing clip;
+    on_conflict: what happens if its labels or hints differ. That clip is queued again if it had
+    failed, or if it comes with another recording, which replaces the old one. Raises BadField,
+    EmptyFile, UnknownFormat, TooLarge, DiskFull, Conflict; then nothing is stored.
     """
     file_name = fields.file_name(filename)
     # Before the bytes are read: a wrong label must not cost an upload.
-    said = fields.sent_values(values or {}, fields.stem(file_name))
+    said = clip_fields.sent_values(values or {}, fields.stem(file_name))
     tidy_path = fields.path(path)
     limit = lib.settings.max_upload_bytes
     with ExitStack() as files:
@@ -166,8 +166,8 @@ def _changed(tx: Tx, clip: ClipRecord, changes: ClipChanges) -> ClipRecord:
     if not changes:
         return clip
     after = stored.patch(tx, clip.id, changes)
-    if len(after.metadata) > fields.MAX_META_KEYS:
-        message = f"the clip would have more than {fields.MAX_META_KEYS} keys"
+    if len(after.metadata) > clip_fields.MAX_META_KEYS:
+        message = f"the clip would have more than {clip_fields.MAX_META_KEYS} keys"
         raise fields.bad_field("metadata", message)
     return after
 
@@ -308,7 +308,7 @@ def _checked_changes(changes: Mapping[str, Any]) -> ClipChanges:
         if field not in PATCHABLE:
             allowed = ", ".join(PATCHABLE)
             raise fields.bad_field(field, f"cannot be changed; fields that can: {allowed}")
-    tidy = fields.checked(changes)
+    tidy = clip_fields.checked(changes)
     if "name" in tidy and tidy["name"] is None:
         raise fields.bad_field("name", "must not be empty")
     return tidy

@@ -9,19 +9,17 @@ from __future__ import annotations
 from app.analysis.analyze import ANALYSIS_VERSION, Analysis
 from app.analysis.energy.energy import EnergyMethod
 from app.errors import (
-    MAX_MESSAGE,
     AnalysisCrashed,
     AnalysisInterrupted,
     AnalysisTimedOut,
     BadContent,
-    KinedexError,
     ModelNotFitted,
     NotFound,
     StorageError,
     StoredFileMissing,
     TooLarge,
-    shortened,
 )
+from app.kinedex_error import MAX_MESSAGE, KinedexError, shortened
 from app.services.children.child import ChildDied
 from app.services.library.analysis_pool import AnalysisRequest
 from app.services.library.keypose_frames import annotated_keypose_arrays

@@ -10,7 +10,7 @@ import csv
 import io
 from collections.abc import Iterator, Sequence
 
-from app.services import fields
+from app.services import clip_fields
 from app.services.library.library import Library
 from app.store.clips import keypose_annotations
 from app.store.clips import listing as clip_listing
@@ -55,7 +55,7 @@ def _rows(tx: Tx, ids: Sequence[str], keys: Sequence[str]) -> Iterator[list[str]
 
 
 def _hint(clip: ClipRecord, name: str) -> object:
-    return getattr(clip.hints, fields.stored_name(name))
+    return getattr(clip.hints, clip_fields.stored_name(name))
 
 
 def _cell(value: object) -> str:

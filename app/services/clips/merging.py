@@ -13,8 +13,9 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
-from app.errors import Conflict, Place
-from app.services import fields
+from app.errors import Conflict
+from app.kinedex_error import Place
+from app.services import clip_fields
 from app.store.clips.record import META, ClipRecord, Difference, NewClip
 from app.store.clips.rows import flat, sent_values
 
@@ -60,7 +61,7 @@ def merge(clip: ClipRecord, new: NewClip, policy: OnConflict, paths: Collection[
             continue  # edited since, and nothing new came
         is_edited = ours != base.get(name)
         is_applied = policy is OnConflict.UPDATE or (policy is OnConflict.MERGE and not is_edited)
-        differences.append(Difference(fields.client_name(name), ours, sent, is_applied))
+        differences.append(Difference(clip_fields.client_name(name), ours, sent, is_applied))
         if is_applied:
             base[name] = sent
     if policy is OnConflict.ERROR and differences:
@@ -96,7 +97,7 @@ def _changes(
         difference.field: difference.sent for difference in differences if difference.applied
     }
     for name in new.sent:
-        if fields.client_name(name) not in applied:
+        if clip_fields.client_name(name) not in applied:
             continue
         if name.startswith(META):
             key = name.removeprefix(META)

@@ -11,7 +11,8 @@ from __future__ import annotations
 
 import logging
 
-from app.errors import NotFound, Place
+from app.errors import NotFound
+from app.kinedex_error import Place
 from app.services import fields
 from app.services.clips import traces
 from app.services.library.fitted_models import ModelKind, holds_persons

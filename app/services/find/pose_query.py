@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from app.analysis.descriptors.pose_cover import pose_vectors
-from app.errors import BadField, Place
+from app.errors import BadField
+from app.kinedex_error import Place
 from app.motion.frame.body_frame import ANALYSIS_RATE
 from app.motion.frame.body_pose import SIDES
 from app.motion.roles.joint_roles import SUN_ROLES

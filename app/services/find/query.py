@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.errors import BadField, EmptyFile, Place, TooLarge
+from app.errors import BadField, EmptyFile, TooLarge
+from app.kinedex_error import Place
 from app.motion.frame.body_frame import ANALYSIS_RATE
 from app.motion.motion import Motion
 from app.numerics.arrays import FloatArray

@@ -11,7 +11,8 @@ import struct
 import zipfile
 from typing import BinaryIO
 
-from app.errors import Place, TooLarge
+from app.errors import TooLarge
+from app.kinedex_error import Place
 
 HEADER_BYTES = 46
 """Bytes of a directory entry before its name, extra fields and comment (APPNOTE 4.3.12)."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 
 from app.errors import BadField
-from app.services import fields
+from app.services import clip_fields
 from app.store.clips.record import META
 
 MIN_CHECKED_LENGTH = 4
@@ -85,7 +85,7 @@ def metadata_key(name: str, known: Collection[str]) -> str:
                 f" own, write `{META}{name}`"
             )
     try:
-        return fields.metadata_key(name.removeprefix(META))
+        return clip_fields.metadata_key(name.removeprefix(META))
     except BadField as problem:
         raise BadColumn(f"`{name}`: {problem.places[0].message}") from problem
 

@@ -17,9 +17,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from app.errors import BadField, KinedexError, Place
-from app.services import fields
-from app.services.fields import SentValues
+from app.errors import BadField
+from app.kinedex_error import KinedexError, Place
+from app.services import clip_fields, fields
+from app.services.clip_fields import SentValues
 from app.services.imports.columns import Columns
 from app.services.imports.manifest_table import (
     MANIFEST_NAME,
@@ -36,8 +37,8 @@ FPS = "fps"
 """Another name of the column `frame_rate`. If a manifest has both columns, `fps` counts."""
 NO_COLUMN = ("roles", "stack")
 """Hints that have no column in a manifest."""
-HINTS = tuple(hint for hint in fields.HINTS if hint not in NO_COLUMN)
-LABELS = tuple(label for label in fields.LABELS if label != "metadata")
+HINTS = tuple(hint for hint in clip_fields.HINTS if hint not in NO_COLUMN)
+LABELS = tuple(label for label in clip_fields.LABELS if label != "metadata")
 COLUMNS = (*LABELS, FPS, *HINTS, "keyposes")
 """The columns of a row that are read, besides `path` and `audio`."""
 
@@ -120,13 +121,13 @@ class Manifest:
         given = combined(self._options.values, self._from_path(path) or {})
         try:
             if text is None:
-                return ManifestRow(0, fields.sent_values(given, name))
+                return ManifestRow(0, clip_fields.sent_values(given, name))
             if text.cells is None:
                 raise _repeated(text.line)
             return _row(text, given, name)
         except BadField as problem:
             line = 0 if text is None else text.line
-            return ManifestRow(line, fields.sent_values({}, name), problem=problem)
+            return ManifestRow(line, clip_fields.sent_values({}, name), problem=problem)
 
     def is_matched(self, path: str) -> bool:
         """Whether the pattern of the options matches a path; True without a pattern."""
@@ -156,7 +157,7 @@ def _row(text: _RowText, given: Mapping[str, Any], default_name: str) -> Manifes
     values = combined(given, text.values())
     times = values.pop("keyposes", None)
     try:
-        said = fields.sent_values(values, default_name)
+        said = clip_fields.sent_values(values, default_name)
         keyposes = fields.keyposes(times) or None
     except BadField as problem:
         raise _unusable(text, problem) from problem

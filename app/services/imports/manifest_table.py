@@ -12,7 +12,8 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Protocol
 
-from app.errors import Place, TooLarge, Unreadable
+from app.errors import TooLarge, Unreadable
+from app.kinedex_error import Place
 from app.services.imports.columns import BadColumn, Columns
 
 MANIFEST_NAME = "manifest.csv"

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from app.services import fields
+from app.services import clip_fields
 from app.services.clips.merging import OnConflict
 from app.services.imports.path_pattern import PathPattern
 
@@ -27,7 +27,7 @@ class ImportOptions:
 
     def check(self) -> None:
         """Raises BadField for a bad value or pattern."""
-        fields.checked(self.values)
+        clip_fields.checked(self.values)
         self.path_pattern()
 
     def path_pattern(self) -> PathPattern | None:

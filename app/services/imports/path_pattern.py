@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from app.services import fields
+from app.services import clip_fields, fields
 from app.services.imports.columns import BadColumn, metadata_key
 from app.store.clips.metadata_values import from_cell
 
@@ -18,7 +18,7 @@ MAX_PATTERN = 500
 """Characters of a pattern."""
 NO_FIELD = ("roles", "metadata")
 """Fields that a part of a path cannot be."""
-FIELDS = tuple(name for name in (*fields.LABELS, *fields.HINTS) if name not in NO_FIELD)
+FIELDS = tuple(name for name in (*clip_fields.LABELS, *clip_fields.HINTS) if name not in NO_FIELD)
 _TOKEN = re.compile(r"\{([^{}]*)\}|(\*\*/?)|(\*)")
 
 

@@ -11,7 +11,8 @@ import heapq
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from app.errors import BadContent, KinedexError, Place, TooLarge, Unreadable
+from app.errors import BadContent, TooLarge, Unreadable
+from app.kinedex_error import KinedexError, Place
 from app.services.fields import MAX_PATH, bad_field
 from app.services.fields import path as clip_path
 from app.services.imports.manifest import Manifest, ManifestRow

@@ -10,8 +10,9 @@ import time
 from collections.abc import Callable
 from contextlib import ExitStack
 
-from app.errors import Canceled, KinedexError, LeaseLost, StorageError
+from app.errors import Canceled, LeaseLost, StorageError
 from app.formats.sniff import HEAD_BYTES, TAIL_BYTES, sniff
+from app.kinedex_error import KinedexError
 from app.services import fields
 from app.services.clips.catalogue import BULK_PRIORITY, Created, add, check_content, keep
 from app.services.clips.merging import OnConflict

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from posixpath import splitext
 
-from app.errors import BadContent, EmptyFile, KinedexError, UnknownFormat
+from app.errors import BadContent, EmptyFile, UnknownFormat
+from app.kinedex_error import KinedexError
 
 MOTION_ENDINGS = (".bvh", ".amc", ".c3d", ".fbx", ".npz", ".npy")
 """Endings of the names of motion files, in lower case."""

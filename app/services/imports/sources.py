@@ -19,7 +19,8 @@ from pathlib import Path, PurePosixPath
 from types import TracebackType
 from typing import IO, BinaryIO
 
-from app.errors import BadContent, KinedexError, Place, TooLarge, Unreadable
+from app.errors import BadContent, TooLarge, Unreadable
+from app.kinedex_error import KinedexError, Place
 from app.services.imports.archive_directory import open_zip
 
 _ENCRYPTED = 0x1

@@ -21,12 +21,11 @@ from app.errors import (
     AnalysisTimedOut,
     BadContent,
     ExtraNeeded,
-    KinedexError,
-    Place,
     StorageError,
     StoredFileMissing,
     TooLarge,
 )
+from app.kinedex_error import KinedexError, Place
 from app.logs import level_of_process
 from app.services.children.child import ChildEnded
 from app.services.children.pool import ChildPool, TaskTimedOut

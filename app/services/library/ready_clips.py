@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from app.errors import ClipNotFound, ClipNotReady, Place
+from app.errors import ClipNotFound, ClipNotReady
+from app.kinedex_error import Place
 from app.numerics.arrays import FloatArray
 from app.search.index import usable_arrays
 from app.services.library.library import Library

@@ -8,7 +8,8 @@ from enum import StrEnum
 
 import numpy as np
 
-from app.errors import ClipNotReady, NotEnoughLabels, NotFound, Place
+from app.errors import ClipNotReady, NotEnoughLabels, NotFound
+from app.kinedex_error import Place
 from app.models.synthesis.agreement import agree
 from app.models.synthesis.model import Synthesis, mean_of_takes
 from app.models.synthesis.prediction import Predicted, predict

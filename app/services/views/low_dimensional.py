@@ -18,7 +18,8 @@ from app.analysis.low_dimensional.eigen_motion import (
 )
 from app.analysis.low_dimensional.plausibility import Plausibility, judge_poses
 from app.deadline import check
-from app.errors import NotEnoughKeyposes, Place
+from app.errors import NotEnoughKeyposes
+from app.kinedex_error import Place
 from app.motion.frame.body_frame import ANALYSIS_RATE, BodyTrack, body_track
 from app.motion.motion import Motion
 from app.motion.roles.joint_roles import SUN_PARENTS, SUN_ROLES, JointRole

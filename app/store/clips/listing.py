@@ -7,7 +7,8 @@ from datetime import datetime
 
 from sqlalchemy import ColumnElement, Select, func, or_, select
 
-from app.errors import BadField, Place
+from app.errors import BadField
+from app.kinedex_error import Place
 from app.store.clips import repository as clip_repository
 from app.store.clips.filter import ClipFilter, condition
 from app.store.clips.record import REANALYSIS_OPEN, ClipRecord, ClipState, Reanalysis

@@ -8,7 +8,8 @@ from typing import Any
 
 from sqlalchemy import RowMapping, bindparam, delete, insert, select, update
 
-from app.errors import ClipNotFound, Place
+from app.errors import ClipNotFound
+from app.kinedex_error import Place
 from app.store.clips import clip_metadata
 from app.store.clips import versions as library
 from app.store.clips.record import (

@@ -12,7 +12,8 @@ from typing import Generic, TypeVar
 
 from sqlalchemy import ColumnElement, and_, or_
 
-from app.errors import BadField, Place
+from app.errors import BadField
+from app.kinedex_error import Place
 from app.store.database import cursor_codec
 from app.store.database.cursor_codec import as_number, as_text
 from app.store.database.totals import Total

@@ -2,72 +2,22 @@
 
 from __future__ import annotations
 
-from datetime import UTC, datetime
-from typing import Any
-
 from sqlalchemy import (
-    JSON,
     BigInteger,
     Boolean,
     Column,
-    DateTime,
-    Dialect,
     Float,
     ForeignKey,
     Index,
     Integer,
     LargeBinary,
-    MetaData,
     String,
     Table,
     UniqueConstraint,
     false,
 )
-from sqlalchemy.types import TypeDecorator
 
-metadata = MetaData(
-    naming_convention={
-        "ix": "ix_%(table_name)s_%(column_0_N_name)s",
-        "uq": "uq_%(table_name)s_%(column_0_N_name)s",
-        "ck": "ck_%(table_name)s_%(constraint_name)s",
-        "fk": "fk_%(table_name)s_%(column_0_N_name)s_%(referred_table_name)s",
-        "pk": "pk_%(table_name)s",
-    }
-)
-
-
-class UtcDateTime(TypeDecorator[datetime]):
-    """A time in UTC. In Python it always has a time zone, which SQLite does not store."""
-
-    impl = DateTime(timezone=True)
-    cache_ok = True
-
-    def process_bind_param(
-        self,
-        value: datetime | None,
-        dialect: Dialect,  # noqa: ARG002 - SQLAlchemy's signature
-    ) -> datetime | None:
-        """The value to store: in UTC."""
-        return None if value is None else value.astimezone(UTC)
-
-    def process_result_value(
-        self,
-        value: datetime | None,
-        dialect: Dialect,  # noqa: ARG002 - SQLAlchemy's signature
-    ) -> datetime | None:
-        """The stored value with the time zone UTC."""
-        if value is None:
-            return None
-        return value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
-
-
-def _json(name: str, **options: Any) -> Column[Any]:
-    return Column(name, JSON(none_as_null=True), **options)
-
-
-def _clip_key(**options: Any) -> Column[Any]:
-    return Column("clip_id", String, ForeignKey("clips.id", ondelete="CASCADE"), **options)
-
+from app.store.database.columns import UtcDateTime, clip_key, json_column, metadata
 
 library = Table(
     "library",
@@ -101,7 +51,7 @@ clips = Table(
     # The name, the path and the texts of the metadata, folded, one a line: see `rows`.
     Column("searched", String, nullable=False, server_default=""),
     # The labels and hints that came with the file last: see `ClipRecord.imported`.
-    _json("imported"),
+    json_column("imported"),
     Column("state", String, nullable=False, index=True),
     Column("format", String),
     Column("person", String, index=True),
@@ -111,11 +61,11 @@ clips = Table(
     Column("frame_rate_override", Float),
     Column("metres_per_unit_override", Float),
     Column("up_axis_override", String),
-    _json("roles_override"),
+    json_column("roles_override"),
     Column("stack_override", String),
     Column("audio_offset_override", Float),
     Column("tempo_override", Float),
-    _json("beats_override"),
+    json_column("beats_override"),
     Column("audio_offset", Float),
     Column("frames", Integer),
     Column("frame_rate", Float),
@@ -123,10 +73,10 @@ clips = Table(
     Column("duration", Float, index=True),
     Column("joints", Integer),
     Column("metres_per_unit", Float),
-    _json("roles"),
-    _json("missing_roles"),
-    _json("warnings"),
-    _json("error"),
+    json_column("roles"),
+    json_column("missing_roles"),
+    json_column("warnings"),
+    json_column("error"),
     Column("analysis_version", Integer),
     Column("reanalysis", String, index=True),
     Column("is_changed", Boolean, nullable=False, server_default=false()),
@@ -137,7 +87,7 @@ clips = Table(
 clip_words = Table(
     "clip_words",
     metadata,
-    _clip_key(primary_key=True),
+    clip_key(primary_key=True),
     Column("word", String, primary_key=True, index=True),
     Column("position", Integer, nullable=False),
 )
@@ -145,7 +95,7 @@ clip_words = Table(
 clip_metadata = Table(
     "clip_metadata",
     metadata,
-    _clip_key(primary_key=True),
+    clip_key(primary_key=True),
     Column("key", String, primary_key=True),
     Column("kind", String, nullable=False),
     Column("text", String, nullable=False),
@@ -166,7 +116,7 @@ tombstones = Table(
 clip_arrays = Table(
     "clip_arrays",
     metadata,
-    _clip_key(primary_key=True),
+    clip_key(primary_key=True),
     Column("name", String, primary_key=True),
     Column("version", Integer, nullable=False),
     Column("dtype", String, nullable=False),
@@ -177,8 +127,8 @@ clip_arrays = Table(
 keypose_annotations = Table(
     "keypose_annotations",
     metadata,
-    _clip_key(primary_key=True),
-    _json("times", nullable=False),
+    clip_key(primary_key=True),
+    json_column("times", nullable=False),
     Column("annotated_at", UtcDateTime, nullable=False),
 )
 
@@ -193,11 +143,11 @@ jobs = Table(
     # No foreign key: the job remains as a record after its clip is deleted.
     Column("clip_id", String, index=True),
     Column("file_sha256", String, index=True),
-    _json("payload", nullable=False),
+    json_column("payload", nullable=False),
     Column("progress", Float, nullable=False),
     Column("detail", String),
-    _json("result"),
-    _json("error"),
+    json_column("result"),
+    json_column("error"),
     Column("attempts", Integer, nullable=False),
     Column("max_attempts", Integer, nullable=False),
     Column("owner", String),
@@ -224,9 +174,9 @@ import_entries = Table(
     Column("path", String, primary_key=True),
     Column("outcome", String, nullable=False),
     Column("clip_id", String, ForeignKey("clips.id", ondelete="SET NULL"), index=True),
-    _json("problem"),
+    json_column("problem"),
     # The labels and hints that differed from those of the stored clip: see `record.Difference`.
-    _json("differences"),
+    json_column("differences"),
 )
 
 models = Table(
@@ -237,7 +187,7 @@ models = Table(
     Column("version", Integer, nullable=False),
     Column("library_version", BigInteger, nullable=False),
     Column("library_size", Integer, nullable=False),
-    _json("meta", nullable=False),
+    json_column("meta", nullable=False),
     Column("created_at", UtcDateTime, nullable=False),
     UniqueConstraint("kind", "version"),
 )
@@ -267,10 +217,10 @@ study_pairs = Table(
     "study_pairs",
     metadata,
     Column("id", String, primary_key=True),
-    _clip_key(nullable=False, index=True),
+    clip_key(nullable=False, index=True),
     Column("dimensions", Integer, nullable=False),
     # Stored with the pair, because a pair that has votes must not change.
-    _json("keyposes", nullable=False),
+    json_column("keyposes", nullable=False),
     Column("sequence", String, nullable=False, index=True),
     Column("left_basis", String, nullable=False),
     Column("created_at", UtcDateTime, nullable=False, index=True),
@@ -309,12 +259,12 @@ webhooks = Table(
     Column("id", String, primary_key=True),
     Column("url", String, nullable=False),
     Column("secret", String, nullable=False),
-    _json("events", nullable=False),
+    json_column("events", nullable=False),
     Column("is_enabled", Boolean, nullable=False, index=True),
     # Failures without a success in between, and when the next delivery is due.
     Column("failures", Integer, nullable=False),
     Column("not_before", UtcDateTime),
-    _json("last_delivery"),
+    json_column("last_delivery"),
     Column("created_at", UtcDateTime, nullable=False),
 )
 

@@ -16,7 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO, Protocol
 
-from app.errors import BadField, DiskFull, NotFound, Place, StorageError, TooLarge
+from app.errors import BadField, DiskFull, NotFound, StorageError, TooLarge
+from app.kinedex_error import Place
 from app.store.files.hash_check import SHA256, HashChecker
 from app.store.files.id_file import read_id
 from app.store.files.locked_file import create_locked, remove_if_abandoned

@@ -13,7 +13,8 @@ import threading
 import time
 from pathlib import Path
 
-from app.errors import FileDamaged, Place
+from app.errors import FileDamaged
+from app.kinedex_error import Place
 
 SHA256 = re.compile(r"[0-9a-f]{64}")
 """The name of a stored file."""

@@ -23,15 +23,8 @@ from functools import partial
 from pathlib import Path
 from typing import BinaryIO
 
-from app.errors import (
-    BadField,
-    DatabaseDamaged,
-    DiskFull,
-    FileDamaged,
-    NotFound,
-    Place,
-    StorageError,
-)
+from app.errors import BadField, DatabaseDamaged, DiskFull, FileDamaged, NotFound, StorageError
+from app.kinedex_error import Place
 from app.store.clips import versions as library
 from app.store.database.engine import Database
 from app.store.files.files import NO_SPACE, FileStore

@@ -18,7 +18,8 @@ from pathlib import Path
 
 from sqlalchemy.exc import SQLAlchemyError
 
-from app.errors import DatabaseDamaged, DatabaseGone, Place, StorageError
+from app.errors import DatabaseDamaged, DatabaseGone, StorageError
+from app.kinedex_error import Place
 from app.store.clips import versions as library
 from app.store.database.ids import new_id
 from app.store.store import Store

@@ -6,7 +6,7 @@ import pytest
 
 from app import errors
 from app.api.failures.problems import problem_of, problem_of_validation, status_of, stored_problem
-from app.errors import KinedexError, Place
+from app.kinedex_error import KinedexError, Place
 
 
 def _all_kinds(kind: type[KinedexError] = KinedexError) -> list[type[KinedexError]]:

@@ -34,7 +34,7 @@ FETCHED = ("Sec-Fetch-Site", "Sec-Fetch-Mode", "Sec-Fetch-Dest")
 def status_of(live: Live, path: str, head: str, method: str = "GET", version: str = "1.1") -> int:
     """Send a request with exactly these headers, also Host, and return the status."""
     address = urlsplit(live.url)
-    with socket.create_connection((address.hostname, address.port), timeout=30) as line:
+    with socket.create_connection((address.hostname, address.port), timeout=300) as line:
         request = f"{method} {path} HTTP/{version}\r\n{head}Connection: close\r\n\r\n"
         line.sendall(request.encode("latin-1"))
         return int(b"".join(iter(lambda: line.recv(65536), b"")).split(b" ", 2)[1])

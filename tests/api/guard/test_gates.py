@@ -17,7 +17,7 @@ Receive = Callable[[], Awaitable[dict[str, Any]]]
 
 
 def run(test: Callable[[], Coroutine[Any, Any, None]]) -> None:
-    asyncio.run(asyncio.wait_for(test(), 30.0))
+    asyncio.run(asyncio.wait_for(test(), 300))
 
 
 async def stays() -> dict[str, Any]:

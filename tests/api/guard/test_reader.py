@@ -19,7 +19,7 @@ from uvicorn.server import ServerState
 from app.api.guard import protocol, reader
 from app.api.guard.connections import Connections
 from app.api.guard.protocol import GuardedProtocol
-from tests.live import Live, serve, wait_until
+from tests.live import NET_S, Live, serve, wait_until
 
 BODY = b"x" * 20_000_000
 """More bytes than the buffers of a connection can hold."""
@@ -144,13 +144,13 @@ def test_clients_that_do_not_read_files_block_nobody(tmp_path: Path) -> None:
             clip = client.post("/v1/clips", files=files).json()["clip"]["id"]
         for _ in range(8):
             _ask(live, held, f"/v1/clips/{clip}/file")
-        wait_until(lambda: _is_alive(live), 60)
+        wait_until(lambda: _is_alive(live), NET_S)
 
 
 def _ask(live: Live, held: ExitStack, path: str) -> None:
     address = urlsplit(live.url)
     place = (address.hostname, address.port)
-    line = held.enter_context(closing(socket.create_connection(place, timeout=30)))
+    line = held.enter_context(closing(socket.create_connection(place, timeout=300)))
     line.sendall(f"GET {path} HTTP/1.1\r\nHost: {address.netloc}\r\n\r\n".encode())
     assert line.recv(12) == b"HTTP/1.1 200"
 

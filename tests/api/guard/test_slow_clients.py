@@ -24,7 +24,7 @@ from app.api.guard.connections import Connections
 from app.api.guard.protocol import GuardedProtocol
 from app.api.guard.slots import Slots
 from tests.api.conftest import assert_problem
-from tests.live import Live, serve, wait_until
+from tests.live import NET_S, Live, serve, wait_until
 
 HALF = b"GET /v1/clips HTTP/1.1\r\nHost: localhost\r\nX-Half: "
 FORM = {"Content-Type": "multipart/form-data; boundary=x"}
@@ -39,7 +39,7 @@ def lines_to(live: Live, count: int) -> Iterator[list[socket.socket]]:
     with ExitStack() as held:
         yield [
             held.enter_context(
-                closing(socket.create_connection((address.hostname, address.port), timeout=30))
+                closing(socket.create_connection((address.hostname, address.port), timeout=300))
             )
             for _ in range(count)
         ]
@@ -79,7 +79,7 @@ def test_half_sent_headers_make_room_for_others(small: Live) -> None:
         with small.client() as client:
             assert client.get("/livez").status_code == 200
             assert client.get("/v1/clips").status_code == 200
-        wait_until(lambda: all(is_closed(line) for line in lines[:40]), 30)
+        wait_until(lambda: all(is_closed(line) for line in lines[:40]), NET_S)
         assert not any(is_closed(line) for line in lines[-10:])
 
 
@@ -98,7 +98,7 @@ def test_a_thousand_half_sent_headers_from_one_address(tmp_path: Path) -> None:
             assert client.get("/livez").status_code == 200
             answer = client.post(SEARCH, json={"clip_id": "x"})
             assert_problem(answer, 404, "clip_not_found")
-        wait_until(lambda: all(is_closed(line) for line in lines), 60)
+        wait_until(lambda: all(is_closed(line) for line in lines), NET_S)
 
 
 @contextmanager
@@ -122,7 +122,7 @@ def test_connections_with_a_running_call_are_not_closed(small: Live, take: Any) 
             answer = b"".join(iter(lambda: refused.recv(65536), b""))
         assert answer.startswith(b"HTTP/1.1 503")
         assert b"too_many_connections" in answer
-    wait_until(lambda: _is_alive(small), 30)
+    wait_until(lambda: _is_alive(small), NET_S)
 
 
 def _is_alive(live: Live) -> bool:
@@ -139,9 +139,9 @@ def test_slow_searches_block_neither_uploads_nor_searches(small: Live) -> None:
         assert client.post(SEARCH, json={"clip_id": "x"}).status_code == 404
         asked = client.post(SEARCH, content=BEGIN + b"asked\r\n--x--\r\n", headers=FORM)
         assert asked.status_code == 422
-        wait_until(lambda: sum(map(is_closed, lines)) == 6, 30)
+        wait_until(lambda: sum(map(is_closed, lines)) == 6, NET_S)
         # Two bodies are received. After a while, the slower one loses its slot to a new body.
-        wait_until(lambda: _begin_another(small) and sum(map(is_closed, lines)) == 7, 30)
+        wait_until(lambda: _begin_another(small) and sum(map(is_closed, lines)) == 7, NET_S)
 
 
 def _begin_another(live: Live) -> bool:
@@ -214,7 +214,7 @@ async def _on_a_line(talk: Callable[[Any, Any], Awaitable[bytes]]) -> bytes:
     async with server:
         reader, writer = await asyncio.open_connection(*server.sockets[0].getsockname())
         try:
-            return await asyncio.wait_for(talk(reader, writer), 30)
+            return await asyncio.wait_for(talk(reader, writer), 300)
         finally:
             writer.close()
 

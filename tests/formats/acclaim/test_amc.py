@@ -9,17 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.errors import (
-    KinedexError,
-    MotionNeeded,
-    SkeletonNeeded,
-    SkeletonNotNeeded,
-    TooLarge,
-    Unreadable,
-)
+from app.errors import MotionNeeded, SkeletonNeeded, SkeletonNotNeeded, TooLarge, Unreadable
 from app.formats.acclaim.amc import read_amc
 from app.formats.bvh.reader import read_bvh
 from app.formats.read import read_recording
+from app.kinedex_error import KinedexError
 from app.motion.canonical.canonical import canonicalize
 from app.motion.roles.joint_roles import SUN_ROLES
 from app.motion.skeleton.recording import Recording

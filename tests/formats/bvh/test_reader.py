@@ -9,9 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.errors import KinedexError, TooLarge, Unreadable
+from app.errors import TooLarge, Unreadable
 from app.formats.bvh.reader import read_bvh
 from app.formats.common.limits import MAX_JOINTS
+from app.kinedex_error import KinedexError
 from app.motion.skeleton.rotations import euler_to_quaternions, rotate
 from tests.cpu_time import cpu_seconds_below
 from tests.formats.samples import HIERARCHY, ROWS, SPINE, bvh

@@ -8,8 +8,9 @@ from contextlib import suppress
 import numpy as np
 import pytest
 
-from app.errors import KinedexError, Unreadable
+from app.errors import Unreadable
 from app.formats.fbx.reader import read_fbx
+from app.kinedex_error import KinedexError
 from tests.cpu_time import cpu_seconds_below
 from tests.formats.fbx.files import AUTO, CUBIC, Bone, Curve, Take, fbx
 from tests.formats.fbx.test_reader import CHAIN, SWAY, TRAITS, clip, curves

@@ -8,10 +8,11 @@ import zlib
 
 import pytest
 
-from app.errors import KinedexError, TooLarge, Unreadable
+from app.errors import TooLarge, Unreadable
 from app.formats.fbx import records as fbx_records
 from app.formats.fbx.reader import read_fbx
 from app.formats.fbx.records import MAX_ARRAY_BYTES, FbxFile
+from app.kinedex_error import KinedexError
 from tests.cpu_time import cpu_seconds_below
 from tests.formats.fbx.files import Array, Record, document
 from tests.formats.fbx.test_reader import clip

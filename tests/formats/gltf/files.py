@@ -127,7 +127,7 @@ class Validator:
         file.write_bytes(content)
         done = subprocess.run(
             ["node", "judge.js", file.name],
-            cwd=self.folder, capture_output=True, text=True, timeout=60.0, check=True,
+            cwd=self.folder, capture_output=True, text=True, timeout=300.0, check=True,
         )  # fmt: skip
         report = json.loads(done.stdout)
         messages: list[dict[str, Any]] = report["issues"]["messages"]

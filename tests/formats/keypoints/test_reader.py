@@ -10,11 +10,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.errors import FormatNotSupported, KinedexError, TooLarge, Unreadable
+from app.errors import FormatNotSupported, TooLarge, Unreadable
 from app.formats.keypoints.reader import read_keypoints
 from app.formats.npz.joint_layouts import LAYOUTS
 from app.formats.read import read_recording
 from app.formats.sniff import sniff
+from app.kinedex_error import KinedexError
 from app.motion.canonical.canonical import canonicalize
 from app.motion.roles.joint_roles import SUN_ROLES
 from app.motion.skeleton.recording import Recording

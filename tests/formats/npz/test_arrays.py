@@ -11,8 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from app.errors import KinedexError, TooLarge, Unreadable
+from app.errors import TooLarge, Unreadable
 from app.formats.npz.arrays import MAX_MEMBERS, Archive, numbers, read_npy, texts
+from app.kinedex_error import KinedexError
 from tests.cpu_time import cpu_seconds_below
 from tests.formats.npz.files import lying_npy, npy, npz, zipped
 

@@ -11,10 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from app.errors import FormatNotSupported, KinedexError, NotHuman, TooLarge, Unreadable
+from app.errors import FormatNotSupported, NotHuman, TooLarge, Unreadable
 from app.formats.npz.reader import read_npz
 from app.formats.npz.writer import write_npz
 from app.formats.read import read_recording
+from app.kinedex_error import KinedexError
 from app.motion.canonical.canonical import canonicalize
 from app.motion.roles.joint_roles import SUN_ROLES
 from tests.cpu_time import cpu_seconds_below

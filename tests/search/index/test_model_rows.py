@@ -148,17 +148,17 @@ def test_a_search_does_not_wait_while_rows_of_new_clips_are_computed() -> None:
 
     def slow(clip_ids: Sequence[str]) -> Mapping[str, FloatArray]:
         computing.set()
-        assert finish.wait(30)
+        assert finish.wait(300)
         return Model()(clip_ids)
 
     computer = threading.Thread(target=rows.of, args=(labels.view(), "m", 2, slow))
     computer.start()
-    assert computing.wait(30)
+    assert computing.wait(300)
     found: list[FloatArray] = []
     search = threading.Thread(target=lambda: found.append(rows.of(before, "m", 2, Model()).values))
     search.start()
-    search.join(10)
+    search.join(300)
     finish.set()
-    computer.join(30)
+    computer.join(300)
     assert [values.tolist() for values in found] == [[[1, 0], [2, 0]]]
     assert rows.of(labels.view(), "m", 2, Model()).values.tolist() == [[1, 0], [2, 0], [3, 0]]

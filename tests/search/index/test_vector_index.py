@@ -164,16 +164,16 @@ def test_searches_continue_while_changes_are_loaded(
 
     def slow(*asked: Any) -> Iterator[Any]:
         loading.set()
-        assert finish.wait(10)
+        assert finish.wait(300)
         return whole(*asked)
 
     monkeypatch.setattr(index_feed, "changed_since", slow)
     thread = threading.Thread(target=index.catch_up, args=(store,))
     thread.start()
-    assert loading.wait(10)
+    assert loading.wait(300)
     assert list(index.nearest(np.zeros(WIDTH), ClipFilter()).ids) == [first.id]
     finish.set()
-    thread.join(10)
+    thread.join(300)
     assert set(index.nearest(np.zeros(WIDTH), ClipFilter()).ids) == {first.id, late.id}
 
 
@@ -204,7 +204,7 @@ def test_many_threads_search_while_clips_are_added_and_deleted(store: Store, add
             clips.delete_clip(tx, clip.id)
     stop.set()
     for thread in threads:
-        thread.join(10)
+        thread.join(300)
     assert not wrong
 
 
@@ -218,7 +218,7 @@ def test_no_search_waits_for_another(
     all_inside, whole = threading.Barrier(8), near.nearest
 
     def wait_for_all(*asked: Any) -> Any:
-        all_inside.wait(30)
+        all_inside.wait(300)
         return whole(*asked)
 
     monkeypatch.setattr(near, "nearest", wait_for_all)

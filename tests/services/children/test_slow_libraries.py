@@ -35,7 +35,7 @@ def test_children_start_with_the_slow_libraries_loaded() -> None:
     child = context.Process(target=_report_loaded, args=(answers,))
     child.start()
     try:
-        assert answers.get(timeout=60) == dict.fromkeys(SLOW, True)
+        assert answers.get(timeout=300) == dict.fromkeys(SLOW, True)
     finally:
         child.join()
 

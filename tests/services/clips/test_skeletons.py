@@ -10,14 +10,8 @@ from typing import Any
 
 import pytest
 
-from app.errors import (
-    BadField,
-    KinedexError,
-    MotionNeeded,
-    SkeletonNeeded,
-    SkeletonNotNeeded,
-    Unreadable,
-)
+from app.errors import BadField, MotionNeeded, SkeletonNeeded, SkeletonNotNeeded, Unreadable
+from app.kinedex_error import KinedexError
 from app.services.clips import catalogue as clips
 from app.services.clips import jobs
 from app.services.clips.catalogue import Created

@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.errors import KinedexError, TooLarge, Unreadable
+from app.errors import TooLarge, Unreadable
+from app.kinedex_error import KinedexError
 from app.services.imports.manifest import Manifest
 from app.services.imports.manifest_table import MAX_COLUMNS, MAX_ROW, ManifestLimits
 from app.store.clips.record import AnalysisHints, ClipLabels

@@ -158,7 +158,7 @@ def test_labels_are_counted(store: Store, add_clip: AddClip) -> None:
 def _add_the_same(url: str, directory: Path, barrier: Barrier) -> None:
     store = Store.open(url, directory)
     for number in range(10):
-        barrier.wait(30)
+        barrier.wait(300)
         with store.write() as tx:
             clips.add_or_get(tx, new_clip(f"clip {number}"))
     store.close()
@@ -174,7 +174,7 @@ def test_processes_that_add_the_same_content_make_one_clip(
     for process in processes:
         process.start()
     for process in processes:
-        process.join(60)
+        process.join(300)
     assert [process.exitcode for process in processes] == [0, 0]
     with store.read() as tx:
         for number in range(10):

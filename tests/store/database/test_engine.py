@@ -74,7 +74,7 @@ def test_threads_lose_no_update(store: Store) -> None:
 
 
 def test_many_threads_can_read_at_once(store: Store) -> None:
-    barrier = threading.Barrier(40, timeout=20)
+    barrier = threading.Barrier(40, timeout=300)
     seen = []
 
     def read() -> None:

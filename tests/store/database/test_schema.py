@@ -140,7 +140,7 @@ def test_two_processes_may_prepare_at_once(tmp_path: Path) -> None:
     for process in processes:
         process.start()
     for process in processes:
-        process.join(60)
+        process.join(300)
     assert [process.exitcode for process in processes] == [0, 0, 0]
     schema.check(url)
 

@@ -194,7 +194,7 @@ def test_processes_claim_each_job_once(store: Store, database_url: str, tmp_path
     for process in processes:
         process.start()
     for process in processes:
-        process.join(60)
+        process.join(300)
     # If two workers had claimed the same job, one of them would have raised LeaseLost.
     assert [process.exitcode for process in processes] == [0, 0]
     with store.read() as tx:
@@ -217,7 +217,7 @@ def test_a_worker_killed_on_this_machine_is_seen_as_dead_at_once(
     spawn = multiprocessing.get_context("spawn")
     process = spawn.Process(target=_claim_and_die, args=(database_url, tmp_path))
     process.start()
-    process.join(60)
+    process.join(300)
     assert process.exitcode == -signal.SIGKILL
     with store.read() as tx:
         left = jobs.get(tx, job.id)

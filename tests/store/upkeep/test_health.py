@@ -18,7 +18,7 @@ from app.store.files.id_file import write_id
 from app.store.store import Store
 from app.store.upkeep import health
 from app.store.upkeep.health import Health
-from tests.live import wait_until
+from tests.live import NET_S, wait_until
 
 
 @pytest.fixture
@@ -104,12 +104,12 @@ def test_damage_is_found_in_the_background_and_its_end_too(
     watched = Health(opened)
     watched.start()
     try:
-        wait_until(lambda: [p.location for p in watched.troubles()] == ["database"], 30.0)
+        wait_until(lambda: [p.location for p in watched.troubles()] == ["database"], NET_S)
         opened.database.engine.dispose()
         pool = opened.database.engine.pool
         with path.open("r+b") as file:
             file.write(content)
-        wait_until(lambda: watched.troubles() == (), 30.0)
+        wait_until(lambda: watched.troubles() == (), NET_S)
         # what the old connections keep in memory may be damaged
         assert opened.database.engine.pool is not pool
     finally:

@@ -1,21 +1,18 @@
 """The settings of an installation: flags, then `KINEDEX_*`, then a TOML file, then defaults.
 
-`settings_table()` documents all of them; a test compares the README with it.
+`app.config.table` documents all of them; a test compares the README with it.
 Secrets are `SecretStr`, so that neither a log line nor a traceback shows them.
 """
 
 from __future__ import annotations
 
-import difflib
 import ipaddress
 import os
 import re
-from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, SecretStr, ValidationError, ValidationInfo, field_validator
+from pydantic import Field, SecretStr, ValidationInfo, field_validator
 from pydantic_settings import (
     BaseSettings,
     NoDecode,
@@ -24,14 +21,9 @@ from pydantic_settings import (
     TomlConfigSettingsSource,
 )
 
-from app.errors import ConfigurationError, Place
-
 ENV_PREFIX = "KINEDEX_"
 CONFIG_FILE_ENV = "KINEDEX_CONFIG_FILE"
 CONFIG_FILE_DEFAULT = "kinedex.toml"
-OTHER_VARIABLES = frozenset({CONFIG_FILE_ENV, "KINEDEX_DATA_SET", "KINEDEX_URL", "KINEDEX_API_KEY"})
-"""Variables with our prefix that are no settings. The second names the folder of the real clips
-that tests read. The last two are read by the client: the service to call, and the key to send."""
 MIN_HEARTBEATS_PER_LEASE = 2.0
 """With fewer, one late heartbeat would give a job to another worker."""
 LOOPBACK_HOSTS = frozenset({"127.0.0.1", "::1", "localhost"})
@@ -278,87 +270,3 @@ def sqlite_url(path: Path) -> str:
     """The URL of the SQLite database at `path`, which may contain any characters."""
     # SQLAlchemy's URL class cannot write file names that are not UTF-8.
     return f"sqlite:///{str(path).translate(_ESCAPED_IN_URLS)}"
-
-
-def load_settings(**flags: Any) -> Settings:
-    """The settings of this process. A flag with the value None counts as not given.
-
-    Raises ConfigurationError, which names each wrong setting without its value.
-    """
-    given = {name: value for name, value in flags.items() if value is not None}
-    named = os.environ.get(CONFIG_FILE_ENV)
-    if named is not None and not Path(named).is_file():
-        raise ConfigurationError(f"{CONFIG_FILE_ENV} names a file that does not exist: {named}")
-    _refuse_unknown(os.environ)
-    try:
-        return Settings(**given)
-    except ValidationError as error:
-        raise _as_configuration_error(error) from None
-    except ValueError as error:  # tomllib.TOMLDecodeError
-        raise ConfigurationError(f"The settings file cannot be read: {error}") from None
-
-
-def _refuse_unknown(environ: Iterable[str]) -> None:
-    """Raises ConfigurationError for a variable with our prefix that is no setting.
-
-    Otherwise a mistyped name would silently leave its setting at the default.
-    """
-    allowed = {ENV_PREFIX + name.upper() for name in Settings.model_fields} | OTHER_VARIABLES
-    ours = (name for name in sorted(environ) if name.upper().startswith(ENV_PREFIX))
-    places = [Place(name, _unknown_message(name)) for name in ours if name.upper() not in allowed]
-    if places:
-        raise _configuration_error(places)
-
-
-def _unknown_message(name: str) -> str:
-    names = [row.env for row in settings_table()]
-    near = difflib.get_close_matches(name.upper(), names, n=1)
-    return "there is no such setting" + (f"; did you mean {near[0]}?" if near else "")
-
-
-def _as_configuration_error(error: ValidationError) -> ConfigurationError:
-    # Without the input: it may be a secret.
-    items = error.errors(include_input=False, include_url=False, include_context=False)
-    places = []
-    for item in items:
-        name = ENV_PREFIX + ".".join(str(part) for part in item["loc"]).upper()
-        is_unknown = item["type"] == "extra_forbidden"
-        message = item["msg"].removeprefix("Value error, ")
-        places.append(Place(name, _unknown_message(name) if is_unknown else message))
-    return _configuration_error(places)
-
-
-def _configuration_error(places: list[Place]) -> ConfigurationError:
-    detail = "; ".join(f"{place.location}: {place.message}" for place in places)
-    return ConfigurationError(f"The settings do not allow this: {detail}", places=places)
-
-
-@dataclass(frozen=True, slots=True)
-class SettingRow:
-    """One line of the documented table of settings."""
-
-    env: str
-    default: str
-    description: str
-
-
-def settings_table() -> tuple[SettingRow, ...]:
-    """Every setting, in the order of the class, with its default as a user would type it."""
-    rows = [
-        SettingRow(ENV_PREFIX + name.upper(), _as_typed(field.default), field.description or "")
-        for name, field in Settings.model_fields.items()
-    ]
-    rows.append(
-        SettingRow(CONFIG_FILE_ENV, CONFIG_FILE_DEFAULT, "TOML file with these settings by name.")
-    )
-    return tuple(rows)
-
-
-def _as_typed(default: object) -> str:
-    if default is None:
-        return ""
-    if isinstance(default, bool):
-        return str(default).lower()
-    if isinstance(default, tuple):
-        return ",".join(default)
-    return str(default)
