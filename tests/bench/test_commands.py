@@ -19,7 +19,7 @@ import pytest
 
 from app.config import Settings
 from app.search.example.distances import EPSILON, FEATURES, RHO
-from app.store.database import schema
+from app.store import identity
 from app.store.store import Store
 from tests.bench.large_library import fill
 from tests.bench.page import Section
@@ -48,7 +48,7 @@ AT_WORK = 1.5
 
 def test_commands_start_at_once(tmp_path: Path) -> None:
     settings = Settings(data_dir=tmp_path / "data")
-    schema.prepare(settings.database)
+    identity.prepare(settings.database, settings.files_dir)
     store = Store.open(settings.database, settings.files_dir)
     fill(store, CLIPS, names=(FEATURES, RHO, EPSILON))
     store.close()

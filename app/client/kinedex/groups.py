@@ -26,16 +26,12 @@ from kinedex.calls import symbols as calls_symbols
 from kinedex.calls import synthesize as calls_synthesize
 from kinedex.calls import webhooks as calls_webhooks
 from kinedex.methods import CallMethod, Group, ListMethod, SenderType
-from kinedex.types.clips import Clip
-from kinedex.types.jobs import Job, JobFile
-from kinedex.types.labels import Folder, MetadataKey, NamedCount
-from kinedex.types.studies import Pair
 
 
 class Clips(Group[SenderType]):
     """Clips and everything that can be seen of one."""
 
-    list = ListMethod(calls_clips.list_clips, Clip)
+    list = ListMethod(calls_clips.list_clips)
     upload = CallMethod(calls_clips.create_clip)
     get = CallMethod(calls_clips.get_clip)
     update = CallMethod(calls_clips.update_clip)
@@ -65,10 +61,10 @@ class Clips(Group[SenderType]):
 class JobsBase(Group[SenderType]):
     """Jobs: work in the background."""
 
-    list = ListMethod(calls_jobs.list_jobs, Job)
+    list = ListMethod(calls_jobs.list_jobs)
     get = CallMethod(calls_jobs.get_job)
     cancel = CallMethod(calls_jobs.cancel_or_delete_job)
-    files = ListMethod(calls_jobs.list_files, JobFile)
+    files = ListMethod(calls_jobs.list_files)
 
 
 class Search(Group[SenderType]):
@@ -91,19 +87,19 @@ class Models(Group[SenderType]):
 class Labels(Group[SenderType]):
     """Persons, tasks and words of the library."""
 
-    persons = ListMethod(calls_labels.list_persons, NamedCount)
+    persons = ListMethod(calls_labels.list_persons)
     forget_person = CallMethod(calls_labels.forget_person)
-    tasks = ListMethod(calls_labels.list_tasks, NamedCount)
-    words = ListMethod(calls_labels.list_words, NamedCount)
-    list_metadata = ListMethod(calls_labels.list_metadata, MetadataKey)
-    list_folders = ListMethod(calls_labels.list_folders, Folder)
+    tasks = ListMethod(calls_labels.list_tasks)
+    words = ListMethod(calls_labels.list_words)
+    list_metadata = ListMethod(calls_labels.list_metadata)
+    list_folders = ListMethod(calls_labels.list_folders)
     manifest = CallMethod(calls_labels.get_manifest)
 
 
 class Studies(Group[SenderType]):
     """Blind studies that compare low-dimensional motions."""
 
-    list_pairs = ListMethod(calls_studies.list_pairs, Pair)
+    list_pairs = ListMethod(calls_studies.list_pairs)
     draw_pair = CallMethod(calls_studies.draw_pair)
     pair = CallMethod(calls_studies.get_pair)
     delete_pair = CallMethod(calls_studies.delete_pair)

@@ -76,9 +76,8 @@ class CallMethod(Generic[P, Answer]):
 class ListMethod(Generic[P, Item]):
     """A method that lists objects. It returns pages that are fetched during the iteration."""
 
-    def __init__(self, build: Callable[P, Call[Any]], item: type[Item]) -> None:
+    def __init__(self, build: Callable[P, Call[Page[Item]]]) -> None:
         self.build = build
-        self.item = item
         self.__doc__ = build.__doc__
 
     @overload
@@ -96,7 +95,6 @@ class ListMethod(Generic[P, Item]):
 
         @wraps(self.build)
         def method(*args: P.args, **kwargs: P.kwargs) -> Any:
-            call: Call[Page[Item]] = self.build(*args, **kwargs)
-            return pages(call, group.sender.send)
+            return pages(self.build(*args, **kwargs), group.sender.send)
 
         return method

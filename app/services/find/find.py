@@ -17,12 +17,10 @@ from app.search.ranking import cursor as cursors
 from app.search.ranking.ranking import Ranked, score
 from app.services import fields
 from app.services.find.by_metric import rank_by_metric
-from app.services.find.by_words import WORD_MODES, rank_by_words
 from app.services.find.hits import HitPage, Hits, milliseconds_since
-from app.services.find.in_segments import RANKED_BY, find_in_segments
 from app.services.find.in_windows import find_in_windows
 from app.services.find.paging import Match, MatchPage, Paging
-from app.services.find.queries import SCOPES, MotionQuery, WordQuery
+from app.services.find.queries import RANKED_BY_IN_SEGMENTS, SCOPES, MotionQuery, WordQuery
 from app.services.find.query import describe
 from app.services.library.library import Library
 from app.store.clips.filter import ClipFilter
@@ -42,7 +40,7 @@ def find_motion(lib: Library, query: MotionQuery) -> Hits:
     if query.scope not in SCOPES:
         raise fields.bad_field("scope", f"must be one of {', '.join(SCOPES)}")
     version = lib.index.catch_up(lib.store)
-    ranked_by = RANKED_BY if query.scope == "segments" else method
+    ranked_by = RANKED_BY_IN_SEGMENTS if query.scope == "segments" else method
     page = _search(query, method)(lib, query, method, clip_filter)
     return Hits(ranked_by.value, milliseconds_since(began), version, page.items, page.next)
 
@@ -53,6 +51,9 @@ def find_words(lib: Library, query: WordQuery) -> Hits:
     Words that the model does not know are left out, and reported in the result.
     Raises BadField, ModelNotFitted.
     """
+    # A command that searches by example does not wait for the modules of words.
+    from app.services.find.by_words import WORD_MODES, rank_by_words
+
     began = time.perf_counter()
     clip_filter = as_filter(query.filter)
     texts = fields.queried_words(query.words)
@@ -80,7 +81,9 @@ _Search = Callable[[Library, MotionQuery, Method, ClipFilter], HitPage]
 
 def _search(query: MotionQuery, method: Method) -> _Search:
     """The search function for a query's scope and method."""
-    if query.scope == "segments":
+    if query.scope == "segments":  # nor for those of the analysis
+        from app.services.find.in_segments import find_in_segments
+
         return find_in_segments
     if query.segment is not None:
         raise fields.bad_field("segment", "needs scope segments")

@@ -19,7 +19,7 @@ from app.services import fields
 from app.services.find.hits import HitPage
 from app.services.find.in_windows import matches_of
 from app.services.find.paging import MatchPage, Paging
-from app.services.find.queries import MotionQuery
+from app.services.find.queries import RANKED_BY_IN_SEGMENTS, MotionQuery
 from app.services.find.query import describe
 from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
@@ -27,8 +27,7 @@ from app.services.library.ready_clips import ready_clip
 from app.services.views.segments import segment_arrays
 from app.store.clips.filter import ClipFilter
 
-RANKED_BY = Method.VECTOR
-METHODS = (Method.FUSED, RANKED_BY)
+METHODS = (Method.FUSED, RANKED_BY_IN_SEGMENTS)
 """Both compare the vectors of segments. Time warping does not improve the ranking of motions that
 are cut at their keyposes."""
 SCORE_SCALE = 1.0

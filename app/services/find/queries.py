@@ -12,6 +12,7 @@ from app.store.clips.filter import ClipFilter
 
 DEFAULT_LIMIT = 10
 SCOPES = ("clips", "windows", "segments")
+RANKED_BY_IN_SEGMENTS = Method.VECTOR
 
 Filter = ClipFilter | Mapping[str, Any] | None
 """A checked filter, or the conditions as a client sent them, or no filter."""

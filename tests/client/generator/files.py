@@ -32,6 +32,7 @@ from tests.client.generator.schemas import closure, references
 
 ROOT_FOLDER = Path(__file__).resolve().parents[3]
 CLIENT = ROOT_FOLDER / "app" / "client" / "kinedex"
+TYPES = "kinedex.types."
 NOTE = "Generated from the OpenAPI description by `make client`."
 IMPORTS = {
     "dataclass": "dataclasses",
@@ -170,27 +171,46 @@ class _Writer:
             name = re.match(r"def (\w+)", function)
             assert name is not None
             suffix = name[1].removeprefix(one.id)
-            made = f"calls_{module}.{name[1]}"
-            wrapped = f"CallMethod({made})" if item is None else f"ListMethod({made}, {item})"
-            lines.append(f"    {one.name.name}{suffix} = {wrapped}")
+            kind = "CallMethod" if item is None else "ListMethod"
+            made = f"{kind}(calls_{module}.{name[1]})"
+            lines.append(f"    {one.name.name}{suffix} = {made}")
         return lines
 
     def _file(self, doc: str, parts: list[str], path: str) -> str:
-        code = "\n\n".join(parts)
+        is_calls = path.startswith("calls/")
+        code = "\n\n".join(map(self._with_late_import, parts) if is_calls else parts)
         words = set(_WORD.findall(_DOCSTRING.sub("", code)))
         home = f"kinedex.{path[:-3].replace('/', '.')}"
-        lines = [
-            f"from {module} import {name}"
+        homes = {
+            name: module
             for name, module in self.homes.items()
             if name in words and module != home and not _is_argument(name, code)
-        ]
+        }
+        late = {name for name, module in homes.items() if is_calls and module.startswith(TYPES)}
+        lines = [f"from {homes[name]} import {name}" for name in homes.keys() - late]
+        if late:
+            lines.append("from typing import TYPE_CHECKING")
         lines += [
             f"from kinedex.calls import {module} as calls_{module}"
             for module in sorted(set(self.route_modules.values()))
             if f"calls_{module}" in words
         ]
         head = f'"""{doc}. {NOTE}"""\n\nfrom __future__ import annotations\n'
-        return f"{head}\n" + "\n".join(sorted(lines)) + f"\n\n{code}"
+        checked = [f"    from {homes[name]} import {name}" for name in sorted(late)]
+        imports = [*sorted(lines), *(["if TYPE_CHECKING:"] if late else []), *checked]
+        return f"{head}\n" + "\n".join(imports) + f"\n\n{code}"
+
+    def _with_late_import(self, function: str) -> str:
+        """The function with an import of the type of its answer, where it is used.
+
+        So a program loads only the types of the calls that it sends: all of them together are
+        hundreds of classes, which take longer to make than a call takes.
+        """
+        found = re.search(r"\brecord(?:_if_any)?\((\w+)\)", function)
+        if found is None:
+            return function
+        late = f"    from {self.homes[found[1]]} import {found[1]}\n\n"
+        return function.replace("    return Call(", f"{late}    return Call(")
 
 
 def _is_argument(name: str, code: str) -> bool:

@@ -12,6 +12,7 @@ from app.errors import BadField, ClipNotFound, ClipNotReady, EmptyFile, ModelNot
 from app.search.example.methods import Method
 from app.services.clips import catalogue as clips
 from app.services.find import find
+from app.services.find.by_words import WORD_MODES
 from app.services.find.hits import Hits
 from app.services.find.queries import MotionQuery, WordQuery
 from app.services.find.query_source import QuerySource
@@ -186,7 +187,7 @@ def test_a_clip_that_is_not_ready_cannot_be_a_query(lib: Library) -> None:
         find.find_words(lib, WordQuery(["walk"]))
 
 
-@pytest.mark.parametrize("mode", find.WORD_MODES)
+@pytest.mark.parametrize("mode", WORD_MODES)
 def test_words_find_the_clips_that_they_describe(ready_library: Library, mode: str) -> None:
     hits = find.find_words(ready_library, WordQuery(["Walk", "zebra"], mode=mode, limit=100))
     assert [hit.clip.task for hit in hits.items[:3]] == ["walk"] * 3

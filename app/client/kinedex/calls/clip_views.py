@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from kinedex.call import OCTETS, Call, path_of, record, text
 from kinedex.positions import Positions, positions
 from kinedex.sent import given
-from kinedex.types.views import Descriptor, Motion
+
+if TYPE_CHECKING:
+    from kinedex.types.views import Descriptor, Motion
 
 
 def get_motion(
@@ -18,6 +20,8 @@ def get_motion(
     fps: The motion is resampled to this rate. Default: the clip's own rate.
     joints: All joints, or the 13 joints of figure 2 in Sun 2011, in its order. Default: all.
     """
+    from kinedex.types.views import Motion
+
     return Call(
         "get_motion",
         "GET",
@@ -48,6 +52,8 @@ def get_motion_array(
 
 def get_descriptor(clip_id: str) -> Call[Descriptor]:
     """The arrays by which the clip is compared with others."""
+    from kinedex.types.views import Descriptor
+
     return Call(
         "get_descriptor",
         "GET",

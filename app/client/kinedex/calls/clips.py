@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from kinedex.call import Call, nothing, path_of, read_bytes, record
 from kinedex.sent import UNSET, FileInput, Progress, Unset, corrections, given
-from kinedex.types.choices import ClipState
-from kinedex.types.clips import Clip, ClipCreated, ClipList
+
+if TYPE_CHECKING:
+    from kinedex.types.choices import ClipState
+    from kinedex.types.clips import Clip, ClipCreated, ClipList
 
 
 def list_clips(
@@ -66,6 +68,8 @@ def list_clips(
     limit: Maximum number of items in all; None lists all.
     cursor: Where the list starts: `next` of an earlier page.
     """
+    from kinedex.types.clips import ClipList
+
     return Call(
         "list_clips",
         "GET",
@@ -152,6 +156,8 @@ def create_clip(
     beats: Seconds, separated by spaces, as in `0.5 1.1`. They replace all other beats.
     progress: Called with the bytes that were sent and the bytes in total.
     """
+    from kinedex.types.clips import ClipCreated
+
     return Call(
         "create_clip",
         "POST",
@@ -183,6 +189,8 @@ def create_clip(
 
 def get_clip(clip_id: str, *, fields: Sequence[str] | None = None) -> Call[Clip]:
     """One clip."""
+    from kinedex.types.clips import Clip
+
     return Call(
         "get_clip",
         "GET",
@@ -224,6 +232,8 @@ def update_clip(
     beats: Seconds. They replace all other beats. The clip is analyzed again. null or an empty
         list deletes them.
     """
+    from kinedex.types.clips import Clip
+
     return Call(
         "update_clip",
         "PATCH",
@@ -276,6 +286,8 @@ def get_audio(clip_id: str) -> Call[bytes]:
 
 def delete_audio(clip_id: str) -> Call[Clip]:
     """Delete the recording that goes with a clip. The clip is analyzed again."""
+    from kinedex.types.clips import Clip
+
     return Call(
         "delete_audio",
         "DELETE",

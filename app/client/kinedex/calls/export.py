@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from kinedex.call import Call, path_of, read_bytes
 from kinedex.sent import given
-from kinedex.types.choices import (
-    Basis,
-    ExportContent,
-    ExportFormat,
-    ExportJoints,
-    ExportSkeleton,
-    ExportUnit,
-)
+
+if TYPE_CHECKING:
+    from kinedex.types.choices import (
+        Basis,
+        ExportContent,
+        ExportFormat,
+        ExportJoints,
+        ExportSkeleton,
+        ExportUnit,
+    )
 
 
 def get_export(

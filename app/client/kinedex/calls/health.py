@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from kinedex.call import Call, record
-from kinedex.types.health import Alive, Ready
+
+if TYPE_CHECKING:
+    from kinedex.types.health import Alive, Ready
 
 
 def livez() -> Call[Alive]:
     """Answer, even if all threads are busy. Needs no key."""
+    from kinedex.types.health import Alive
+
     return Call("livez", "GET", "/livez", record(Alive))
 
 
@@ -18,4 +24,6 @@ def readyz() -> Call[Ready]:
     replaced, the folder of files is missing or replaced, or nothing can be written. `errors`
     names every problem.
     """
+    from kinedex.types.health import Ready
+
     return Call("readyz", "GET", "/readyz", record(Ready))

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from kinedex.call import Call, record
 from kinedex.sent import FileInput, Progress, given
-from kinedex.types.jobs import JobStarted
+
+if TYPE_CHECKING:
+    from kinedex.types.jobs import JobStarted
 
 
 def start_import(
@@ -40,6 +44,8 @@ def start_import(
         import. By default it does not, and the file is `conflicting`. Default: False.
     progress: Called with the bytes that were sent and the bytes in total.
     """
+    from kinedex.types.jobs import JobStarted
+
     return Call(
         "start_import",
         "POST",

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from kinedex.call import Call, path_of, record, record_if_any
 from kinedex.sent import given
-from kinedex.types.choices import FileOutcome, JobKind, JobState
-from kinedex.types.jobs import Job, JobFileList, JobList
+
+if TYPE_CHECKING:
+    from kinedex.types.choices import FileOutcome, JobKind, JobState
+    from kinedex.types.jobs import Job, JobFileList, JobList
 
 
 def list_jobs(
@@ -20,6 +24,8 @@ def list_jobs(
     limit: Maximum number of items in all; None lists all.
     cursor: Where the list starts: `next` of an earlier page.
     """
+    from kinedex.types.jobs import JobList
+
     return Call(
         "list_jobs",
         "GET",
@@ -31,6 +37,8 @@ def list_jobs(
 
 def get_job(job_id: str) -> Call[Job]:
     """One job."""
+    from kinedex.types.jobs import Job
+
     return Call("get_job", "GET", path_of("/v1/jobs/{job_id}", job_id=job_id), record(Job))
 
 
@@ -40,6 +48,8 @@ def cancel_or_delete_job(job_id: str) -> Call[Job | None]:
     The newest fit cannot be deleted (409), because it says what the models have learned. Kinedex
     also deletes ended jobs after `KINEDEX_JOB_RETENTION_DAYS` days.
     """
+    from kinedex.types.jobs import Job
+
     return Call(
         "cancel_or_delete_job",
         "DELETE",
@@ -63,6 +73,8 @@ def list_files(
     limit: Maximum number of items in all; None lists all.
     cursor: Where the list starts: `next` of an earlier page.
     """
+    from kinedex.types.jobs import JobFileList
+
     return Call(
         "list_files",
         "GET",

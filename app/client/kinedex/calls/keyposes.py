@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from kinedex.call import Call, nothing, path_of, record
 from kinedex.sent import given
-from kinedex.types.keyposes import Keyposes, KeyposesNamed
+
+if TYPE_CHECKING:
+    from kinedex.types.keyposes import Keyposes, KeyposesNamed
 
 
 def get_keyposes(
@@ -35,6 +37,8 @@ def get_keyposes(
     t1: A minimum below this share of the median local maximum is a rest.
     t2: A drop by more than this share of the median local maximum is a rest.
     """
+    from kinedex.types.keyposes import Keyposes
+
     return Call(
         "get_keyposes",
         "GET",
@@ -51,6 +55,8 @@ def name_keyposes(clip_id: str, times: Sequence[float]) -> Call[KeyposesNamed]:
 
     times: Seconds from the start of the clip, in any order.
     """
+    from kinedex.types.keyposes import KeyposesNamed
+
     return Call(
         "name_keyposes",
         "PUT",

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from kinedex.call import Call, nothing, path_of, read_bytes, record
 from kinedex.sent import given
-from kinedex.types.labels import FolderList, MetadataKeys, NamedCounts
+
+if TYPE_CHECKING:
+    from kinedex.types.labels import FolderList, MetadataKeys, NamedCounts
 
 
 def list_persons(*, limit: int | None = None, cursor: str | None = None) -> Call[NamedCounts]:
@@ -15,6 +18,8 @@ def list_persons(*, limit: int | None = None, cursor: str | None = None) -> Call
     limit: Maximum number of items in all; None lists all.
     cursor: Where the list starts: `next` of an earlier page.
     """
+    from kinedex.types.labels import NamedCounts
+
     return Call(
         "list_persons",
         "GET",
@@ -42,6 +47,8 @@ def list_tasks(*, limit: int | None = None, cursor: str | None = None) -> Call[N
     limit: Maximum number of items in all; None lists all.
     cursor: Where the list starts: `next` of an earlier page.
     """
+    from kinedex.types.labels import NamedCounts
+
     return Call(
         "list_tasks",
         "GET",
@@ -60,6 +67,8 @@ def list_words(
     limit: Maximum number of items in all; None lists all.
     cursor: Where the list starts: `next` of an earlier page.
     """
+    from kinedex.types.labels import NamedCounts
+
     return Call(
         "list_words",
         "GET",
@@ -75,6 +84,8 @@ def list_metadata(*, limit: int | None = None, cursor: str | None = None) -> Cal
     limit: Maximum number of items in all; None lists all.
     cursor: Where the list starts: `next` of an earlier page.
     """
+    from kinedex.types.labels import MetadataKeys
+
     return Call(
         "list_metadata",
         "GET",
@@ -95,6 +106,8 @@ def list_folders(
     cursor: Where the list starts: `next` of an earlier page.
     folder: Default: the root.
     """
+    from kinedex.types.labels import FolderList
+
     return Call(
         "list_folders",
         "GET",

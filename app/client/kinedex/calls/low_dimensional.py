@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from kinedex.call import OCTETS, Call, path_of, record, text
 from kinedex.positions import Positions, positions
 from kinedex.sent import given
-from kinedex.types.choices import Basis
-from kinedex.types.low_dimensional import LowDimensional
+
+if TYPE_CHECKING:
+    from kinedex.types.choices import Basis
+    from kinedex.types.low_dimensional import LowDimensional
 
 
 def get_low_dimensional(
@@ -43,6 +47,8 @@ def get_low_dimensional(
     poses: Poses per clip with `basis=uniform`. Default: the number of its keyposes.
     fps: The motion is resampled to this rate. Default: 30, its own rate.
     """
+    from kinedex.types.low_dimensional import LowDimensional
+
     return Call(
         "get_low_dimensional",
         "GET",

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from kinedex.call import Call, path_of, record
 from kinedex.sent import corrections
-from kinedex.types.jobs import JobStarted
-from kinedex.types.models import Model, ModelList
+
+if TYPE_CHECKING:
+    from kinedex.types.jobs import JobStarted
+    from kinedex.types.models import Model, ModelList
 
 
 def list_models() -> Call[ModelList]:
     """The current model of each kind, with the library's size at the fit and held-out figures."""
+    from kinedex.types.models import ModelList
+
     return Call("list_models", "GET", "/v1/models", record(ModelList))
 
 
@@ -23,6 +29,8 @@ def update_model(model_id: str, false_accept_rate: float | None) -> Call[Model]:
         task only if a person does it who did it before. For a new person, a known task is called
         unknown more often.
     """
+    from kinedex.types.models import Model
+
     return Call(
         "update_model",
         "PATCH",
@@ -34,4 +42,6 @@ def update_model(model_id: str, false_accept_rate: float | None) -> Call[Model]:
 
 def request_fit() -> Call[JobStarted]:
     """Fit all models again in the background. Until then, searches use the old models."""
+    from kinedex.types.jobs import JobStarted
+
     return Call("request_fit", "POST", "/v1/models/fit", record(JobStarted))

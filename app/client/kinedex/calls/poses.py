@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from kinedex.call import Call, record
 from kinedex.sent import given
-from kinedex.types.bodies import Filter
-from kinedex.types.choices import MatchesPerClip
-from kinedex.types.pose import PoseHits
+
+if TYPE_CHECKING:
+    from kinedex.types.bodies import Filter
+    from kinedex.types.choices import MatchesPerClip
+    from kinedex.types.pose import PoseHits
 
 
 def search_pose(
@@ -34,6 +37,8 @@ def search_pose(
     limit: Maximum number of items in one answer. Default: 10.
     include_self: Whether the query clip may be a hit. Default: False.
     """
+    from kinedex.types.pose import PoseHits
+
     return Call(
         "search_pose",
         "POST",

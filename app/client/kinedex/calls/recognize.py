@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from kinedex.call import Call, record
 from kinedex.sent import FileInput, Progress, given
-from kinedex.types.recognition import Recognition
+
+if TYPE_CHECKING:
+    from kinedex.types.recognition import Recognition
 
 
 def recognize(
@@ -46,6 +48,8 @@ def recognize(
         as new, and its label in the answer is null.
     progress: Called with the bytes that were sent and the bytes in total.
     """
+    from kinedex.types.recognition import Recognition
+
     return Call(
         "recognize",
         "POST",

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from kinedex.call import Call, record
 from kinedex.sent import FileInput, Progress, given
-from kinedex.types.bodies import Filter
-from kinedex.types.choices import Method
-from kinedex.types.search import MotionHits, WordHits
+
+if TYPE_CHECKING:
+    from kinedex.types.bodies import Filter
+    from kinedex.types.choices import Method
+    from kinedex.types.search import MotionHits, WordHits
 
 
 def search_motion(
@@ -65,6 +67,8 @@ def search_motion(
     segment: With scope segments: the clip's segment of that index is the query.
     progress: Called with the bytes that were sent and the bytes in total.
     """
+    from kinedex.types.search import MotionHits
+
     return Call(
         "search_motion",
         "POST",
@@ -130,6 +134,8 @@ def search_words(
         default.
     limit: Maximum number of items in one answer. Default: 10.
     """
+    from kinedex.types.search import WordHits
+
     return Call(
         "search_words",
         "POST",

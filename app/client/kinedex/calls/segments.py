@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from kinedex.call import Call, path_of, record
-from kinedex.types.segments import SegmentList
+
+if TYPE_CHECKING:
+    from kinedex.types.segments import SegmentList
 
 
 def get_segments(clip_id: str) -> Call[SegmentList]:
@@ -13,6 +17,8 @@ def get_segments(clip_id: str) -> Call[SegmentList]:
     with `POST /v1/search/motion` and `"scope": "segments"`, with `segment` or any part of a
     clip.
     """
+    from kinedex.types.segments import SegmentList
+
     return Call(
         "get_segments",
         "GET",

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from kinedex.call import Call, nothing, record
 from kinedex.sent import given
-from kinedex.types.session import Session
+
+if TYPE_CHECKING:
+    from kinedex.types.session import Session
 
 
 def get_session() -> Call[Session]:
     """Whether keys are needed here, and what the caller's key allows. Needs no key."""
+    from kinedex.types.session import Session
+
     return Call("get_session", "GET", "/v1/session", record(Session))
 
 
@@ -18,6 +24,8 @@ def sign_in(key: str) -> Call[Session]:
 
     key: An API key.
     """
+    from kinedex.types.session import Session
+
     return Call("sign_in", "POST", "/v1/session", record(Session), json=given(key=key))
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from kinedex.call import Call, record
 from kinedex.sent import given
-from kinedex.types.space import SpaceMap
+
+if TYPE_CHECKING:
+    from kinedex.types.space import SpaceMap
 
 
 def get_space(
@@ -46,6 +48,8 @@ def get_space(
     dimensions: Default: 2.
     limit: Maximum number of points. Of more clips, an even selection is shown. Default: 10000.
     """
+    from kinedex.types.space import SpaceMap
+
     return Call(
         "get_space",
         "GET",

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from kinedex.call import OCTETS, Call, nothing, path_of, record, text
 from kinedex.positions import Positions, positions
 from kinedex.sent import given
-from kinedex.types.choices import Choice, Side
-from kinedex.types.studies import Pair, PairList, StudyTally, Vote
-from kinedex.types.views import Motion
+
+if TYPE_CHECKING:
+    from kinedex.types.choices import Choice, Side
+    from kinedex.types.studies import Pair, PairList, StudyTally, Vote
+    from kinedex.types.views import Motion
 
 
 def list_pairs(*, limit: int | None = None, cursor: str | None = None) -> Call[PairList]:
@@ -18,6 +21,8 @@ def list_pairs(*, limit: int | None = None, cursor: str | None = None) -> Call[P
     limit: Maximum number of items in all; None lists all.
     cursor: Where the list starts: `next` of an earlier page.
     """
+    from kinedex.types.studies import PairList
+
     return Call(
         "list_pairs",
         "GET",
@@ -39,6 +44,8 @@ def draw_pair(
     dimensions: Dimensions of both versions, up to the number of poses of the model. Default: 3.
     model_clips: Clips with the poses of the models. Default: the clip itself.
     """
+    from kinedex.types.studies import Pair
+
     return Call(
         "draw_pair",
         "POST",
@@ -50,6 +57,8 @@ def draw_pair(
 
 def get_pair(pair_id: str) -> Call[Pair]:
     """One pair."""
+    from kinedex.types.studies import Pair
+
     return Call(
         "get_pair",
         "GET",
@@ -84,6 +93,8 @@ def get_pair_motion(pair_id: str, side: Side, *, fps: float | None = None) -> Ca
 
     fps: The motion is resampled to this rate. Default: 30, its own rate.
     """
+    from kinedex.types.views import Motion
+
     return Call(
         "get_pair_motion",
         "GET",
@@ -115,6 +126,8 @@ def vote(pair_id: str, choice: Choice, *, voter: str | None = None) -> Call[Vote
     voter: A text that identifies the voter, for example a random number. Each voter has one vote
         on a sequence. Only a hash of it is stored.
     """
+    from kinedex.types.studies import Vote
+
     return Call(
         "vote",
         "POST",
@@ -129,6 +142,8 @@ def get_tally(clip_id: str | None = None) -> Call[StudyTally]:
 
     clip_id: Only votes on pairs of this clip.
     """
+    from kinedex.types.studies import StudyTally
+
     return Call(
         "get_tally",
         "GET",

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from kinedex.call import Call, path_of, record
 from kinedex.sent import UNSET, given
-from kinedex.types.clips import Clip
-from kinedex.types.labels import WordSuggestions
+
+if TYPE_CHECKING:
+    from kinedex.types.clips import Clip
+    from kinedex.types.labels import WordSuggestions
 
 
 def suggest_words(
@@ -20,6 +22,8 @@ def suggest_words(
     mode: As in a search by words: kernel regression (default) or correlated space (cca).
         Default: default.
     """
+    from kinedex.types.labels import WordSuggestions
+
     return Call(
         "suggest_words",
         "GET",
@@ -36,6 +40,8 @@ def accept_words(clip_id: str, *, words: Sequence[str] | None = None) -> Call[Cl
 
     words: Words to add to the clip. Default: all suggestions that are likelier than not.
     """
+    from kinedex.types.clips import Clip
+
     return Call(
         "accept_words",
         "POST",

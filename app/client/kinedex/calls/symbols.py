@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from kinedex.call import OCTETS, Call, path_of, record
 from kinedex.positions import Positions, positions
-from kinedex.types.symbols import SymbolMotion
+
+if TYPE_CHECKING:
+    from kinedex.types.symbols import SymbolMotion
 
 
 def get_symbol_motion(clip_id: str) -> Call[SymbolMotion]:
@@ -13,6 +17,8 @@ def get_symbol_motion(clip_id: str) -> Call[SymbolMotion]:
     It is shown as channels with their standard deviations, and as a motion of the 13 joint
     roles. `Accept: application/octet-stream` returns only the motion.
     """
+    from kinedex.types.symbols import SymbolMotion
+
     return Call(
         "get_symbol_motion",
         "GET",

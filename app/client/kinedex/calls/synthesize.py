@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from kinedex.call import OCTETS, Call, record
 from kinedex.positions import Positions, positions
 from kinedex.sent import given
-from kinedex.types.synthesis import Synthesis
+
+if TYPE_CHECKING:
+    from kinedex.types.synthesis import Synthesis
 
 
 def synthesize(
@@ -41,6 +44,8 @@ def synthesize(
     store: Store the motion as a clip. Default: False.
     bvh: Include the BVH file in the answer. Default: False.
     """
+    from kinedex.types.synthesis import Synthesis
+
     return Call(
         "synthesize",
         "POST",

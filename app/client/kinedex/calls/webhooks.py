@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from kinedex.call import Call, nothing, path_of, record
 from kinedex.sent import UNSET, Unset, corrections, given
-from kinedex.types.webhooks import Webhook, WebhookCreated, WebhookList
+
+if TYPE_CHECKING:
+    from kinedex.types.webhooks import Webhook, WebhookCreated, WebhookList
 
 
 def list_webhooks() -> Call[WebhookList]:
     """All webhooks, each with the outcome of its last delivery."""
+    from kinedex.types.webhooks import WebhookList
+
     return Call("list_webhooks", "GET", "/v1/webhooks", record(WebhookList))
 
 
@@ -42,6 +47,8 @@ def create_webhook(
     secret: `whsec_` and 24 to 64 random bytes in base64. Default: a new one.
     enabled: False: nothing is sent until it is switched on. Default: True.
     """
+    from kinedex.types.webhooks import WebhookCreated
+
     return Call(
         "create_webhook",
         "POST",
@@ -53,6 +60,8 @@ def create_webhook(
 
 def get_webhook(webhook_id: str) -> Call[Webhook]:
     """One webhook, with the outcome of its last delivery."""
+    from kinedex.types.webhooks import Webhook
+
     return Call(
         "get_webhook",
         "GET",
@@ -73,6 +82,8 @@ def update_webhook(
 
     enabled: true also tries a failing webhook again at once.
     """
+    from kinedex.types.webhooks import Webhook
+
     return Call(
         "update_webhook",
         "PATCH",
@@ -97,6 +108,8 @@ def test_webhook(webhook_id: str) -> Call[Webhook]:
 
     `last_delivery` then shows whether it was received.
     """
+    from kinedex.types.webhooks import Webhook
+
     return Call(
         "test_webhook",
         "POST",
