@@ -116,9 +116,10 @@ def _message(failure: Exception) -> list[str] | None:
 
 
 def _other_places(detail: str, places: Any) -> list[str]:
-    """A line for each place of a failure that its detail does not contain already."""
-    lines = [f"{_location(place.location)}{place.message}" for place in places]
-    return [line for line in lines if line not in detail]
+    """A line for each place of a failure whose message the detail does not end with already."""
+    said = detail.rstrip(".")
+    others = [place for place in places if not said.endswith(place.message.rstrip("."))]
+    return [f"{_location(place.location)}{place.message}" for place in others]
 
 
 def _location(location: str) -> str:

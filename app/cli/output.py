@@ -79,12 +79,14 @@ def print_table(
 
 def progress_bar() -> Progress:
     """A progress bar on standard error. Without a terminal, it prints nothing."""
+    errors = Console(stderr=True)
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),
         TaskProgressColumn(),
         TimeRemainingColumn(),
-        console=Console(stderr=True),
+        console=errors,
+        disable=not errors.is_terminal,
     )
 
 

@@ -10,6 +10,7 @@ import pytest
 from app.cli.commands import NEEDS_THIS_MACHINE
 from app.demo import DemoClip, demo_clips
 from tests.cli.conftest import Kinedex
+from tests.formats.acclaim.files import acclaim_person
 from tests.live import Live, serve
 
 
@@ -53,6 +54,27 @@ def test_a_single_file_and_nothing(kinedex: Kinedex, demo_service: Live, tmp_pat
     missing = kinedex("import", str(tmp_path / "nosuch"), *url)
     assert missing.code == 1
     assert "There is no file or folder" in missing.err
+
+
+def test_an_amc_file_takes_the_skeleton_beside_it(
+    kinedex: Kinedex, demo_service: Live, tmp_path: Path
+) -> None:
+    skeleton, content, _ = acclaim_person(frames=60, seed=9)
+    (tmp_path / "91.asf").write_bytes(skeleton)
+    motion = tmp_path / "91_07.amc"
+    motion.write_bytes(content)
+    url = ("--url", demo_service.url)
+    assert kinedex("search", str(motion), "--limit", "1", *url).code == 0
+    assert kinedex("import", str(motion), *url).out == "The clip is in the library.\n"
+    (clip,) = kinedex("clips", "list", "-q", motion.stem, "--json", *url).json()["items"]
+    assert kinedex("clips", "delete", clip["id"], "--yes", *url).code == 0
+
+
+def test_the_pose_of_a_file_is_found(kinedex: Kinedex, demo_service: Live, folder: Path) -> None:
+    file = str(folder / "ada" / "kick_01.bvh")
+    asked = ("search-pose", file, "--time", "0.8", "--limit", "2", "--json")
+    found = kinedex(*asked, "--url", demo_service.url).json()
+    assert [hit["rank"] for hit in found["items"]] == [1, 2]
 
 
 def test_a_service_with_keys(kinedex: Kinedex, tmp_path: Path) -> None:
