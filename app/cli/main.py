@@ -13,12 +13,13 @@ from app import __version__
 from app.cli.commands import COMMANDS, NEEDS_THIS_MACHINE
 from app.cli.lazy import lazy_group
 from app.cli.settings import remember, remote_of
-from app.errors import ClipNotFound, ConfigurationError, KinedexError
+from app.errors import ClipNotFound, ConfigurationError, KinedexError, Unauthorized
 
 FAILURE = 1
 PARTS_OF_REQUESTS = frozenset({"body", "query", "path", "header"})
 """The first part of a location in a problem of the API. It means nothing to a user of commands."""
 
+KEY_ADVICE = "Give a key with --api-key or KINEDEX_API_KEY; `kinedex keys create` makes one."
 OPTIONS_OF_ALL = frozenset({"--data-dir", "--database-url", "--url", "--api-key"})
 
 program = typer.Typer(
@@ -108,6 +109,8 @@ def _message(failure: Exception) -> list[str] | None:
         return [failure.detail, *_other_places(failure.detail, failure.places)]
     client = sys.modules.get("kinedex")  # it is imported only by commands that use it
     if client is not None and isinstance(failure, client.KinedexError):
+        if failure.code == Unauthorized.code:
+            return [failure.detail, KEY_ADVICE]
         return [failure.detail, *_other_places(failure.detail, failure.errors)]
     if isinstance(failure, OSError):
         # a user can fix these (permissions, a full disk), so no traceback is shown

@@ -22,6 +22,9 @@ AsCsv = Annotated[bool, typer.Option("--csv", help="Print CSV (RFC 4180), with a
 MAX_WIDTH = 100
 """Characters in a line of the output for people."""
 
+MAX_PATH = 30
+"""Characters of a path in a table."""
+
 SMALLEST = 0.0005
 """Smaller positive numbers have no digit other than 0 among three decimals."""
 
@@ -75,6 +78,13 @@ def print_table(
     for row in rows:
         table.add_row(*(_cell(cell, name in cut) for name, cell in zip(columns, row, strict=True)))
     console.print(table)
+
+
+def short_path(path: str | None) -> str | None:
+    """A path for a table: its end, which tells files with one name apart."""
+    if path is None or len(path) <= MAX_PATH:
+        return path
+    return f"…{path[1 - MAX_PATH :]}"
 
 
 def progress_bar() -> Progress:

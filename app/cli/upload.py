@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import tempfile
 import zipfile
 from collections.abc import Iterator
@@ -51,8 +50,6 @@ def import_to_service(
 
 def _upload(client: Kinedex, path: Path, given: dict[str, Any]) -> Job | None:
     """The job that analyzes the files; None if the service already had the file."""
-    if "metadata" in given:
-        given = {**given, "metadata": json.dumps(given["metadata"])}
     with progress_bar() as bar:
         if path.is_file() and not _is_archive(path):
             task = bar.add_task("uploading", total=path.stat().st_size)

@@ -55,7 +55,7 @@ def test_hits_are_printed_as_a_table(kinedex: Kinedex, folder: Path) -> None:
     ended = kinedex("search", _file(folder, "walk"), "--include-self", "--limit", "2")
     assert ended.code == 0
     lines = ended.out.splitlines()
-    assert lines[0].split() == ["rank", "score", "name", "person", "task", "id"]
+    assert lines[0].split() == ["rank", "score", "name", "path", "person", "task", "id"]
     assert lines[1].split()[:5] == ["1", "1.000", "walk_01", "ada", "walk"]
     assert len(lines) == 3
 
@@ -69,7 +69,7 @@ def test_parts_of_clips_are_found_with_their_bounds(kinedex: Kinedex, folder: Pa
     assert (first["clip"]["person"], first["clip"]["task"]) == ("ada", "kick")
     assert [first["start"], first["end"]] == pytest.approx([0.5, 2.0], abs=0.11)
     lines = kinedex(*arguments).out.splitlines()
-    columns = ["rank", "score", "start", "end", "name", "person", "task", "id"]
+    columns = ["rank", "score", "start", "end", "name", "path", "person", "task", "id"]
     assert lines[0].split() == columns
     assert lines[1].split()[2:4] == [f"{first['start']:.3f}", f"{first['end']:.3f}"]
     assert "scope: " in _refused(kinedex, *part, "--scope", "frames")
@@ -102,11 +102,15 @@ def test_a_query_in_two_files_and_one_of_several_animations(
     takes = person_takes({"bow": 1.0, "sway": 2.0})
     for name, content in (("07.asf", asf), ("07_01.amc", amc), ("takes.fbx", takes)):
         (tmp_path / name).write_bytes(content)
-    pair = (str(tmp_path / "07_01.amc"), "--skeleton", str(tmp_path / "07.asf"))
+    alone = tmp_path / "alone" / "07_01.amc"
+    alone.parent.mkdir()
+    alone.write_bytes(amc)
+    pair = (str(alone), "--skeleton", str(tmp_path / "07.asf"))
     stack = (str(tmp_path / "takes.fbx"), "--stack")
     for command in ("search", "recognize"):
         assert kinedex(command, *pair).code == 0
         assert kinedex(command, *stack, "bow").code == 0
+        assert kinedex(command, str(tmp_path / "07_01.amc")).code == 0  # 07.asf is beside it
         assert "`skeleton`" in _refused(kinedex, command, pair[0])
         assert "(bow, sway), found 'run'" in _refused(kinedex, command, *stack, "run")
     one, other = (kinedex("search", *stack, n, "--json").json()["items"] for n in ("bow", "sway"))

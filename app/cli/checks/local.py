@@ -125,7 +125,8 @@ def _check_store(store: Store) -> Iterator[Finding]:
         yield fine("files", f"all {len(needed)} stored files are there")
     if clips.get("failed"):
         advice = "`kinedex clips list --state failed` lists them, `clips show` says why."
-        yield note("clips", f"{clips['failed']} clips could not be analyzed", advice)
+        noun = "clip" if clips["failed"] == 1 else "clips"
+        yield note("clips", f"{clips['failed']} {noun} could not be analyzed", advice)
     now = datetime.now(UTC)
     yield check_queue([(j.kind, j.state, j.count, (now - j.oldest).total_seconds()) for j in jobs])
 

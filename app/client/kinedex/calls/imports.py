@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 from kinedex.call import Call, record
 from kinedex.sent import FileInput, Progress, given
 from kinedex.types.jobs import JobStarted
@@ -15,7 +18,7 @@ def start_import(
     words: str | None = None,
     license: str | None = None,
     source: str | None = None,
-    metadata: str | None = None,
+    metadata: str | Mapping[str, Any] | None = None,
     labels: str | None = None,
     overwrite: bool | None = None,
     progress: Progress | None = None,

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Literal
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal
 
 from kinedex.call import Call, record
 from kinedex.sent import FileInput, Progress, given
@@ -21,11 +21,11 @@ def search_pose(
     unit: str | None = None,
     frame_rate: float | None = None,
     up_axis: Literal["x", "y", "z", "-x", "-y", "-z"] | None = None,
-    roles: str | None = None,
+    roles: str | Mapping[str, Any] | None = None,
     stack: str | None = None,
     places: MatchesPerClip | None = None,
     limit: int | None = None,
-    filter: Filter | None = None,
+    filter: Filter | Mapping[str, Any] | None = None,
     include_self: bool | None = None,
     cursor: str | None = None,
     time: float | None = None,

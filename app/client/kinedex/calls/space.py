@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Literal
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal
 
 from kinedex.call import Call, record
 from kinedex.sent import given
+from kinedex.types.bodies import Filter
 from kinedex.types.space import SpaceMap
 
 
@@ -29,6 +30,7 @@ def get_space(
     space: Literal["symbols", "vectors"] | None = None,
     dimensions: Literal["2", "3"] | None = None,
     limit: int | None = None,
+    filter: Filter | Mapping[str, Any] | None = None,
 ) -> Call[SpaceMap]:
     """Every ready clip as a point in two or three dimensions. Similar clips are close together.
 
@@ -45,6 +47,8 @@ def get_space(
         symbols.
     dimensions: Default: 2.
     limit: Maximum number of points. Of more clips, an even selection is shown. Default: 10000.
+    filter: Filters by name, as in a search, for those that are no arguments: {"meta.condition":
+        "tired", "meta.age.min": 30}.
     """
     return Call(
         "get_space",
@@ -69,5 +73,6 @@ def get_space(
             space=space,
             dimensions=dimensions,
             limit=limit,
-        ),
+        )
+        | given(**(filter or {})),
     )
