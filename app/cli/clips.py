@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from app.cli.options import FilterJson, filter_of, metadata_of
-from app.cli.output import AsCsv, AsJson, print_csv, print_json, print_table, short_path
+from app.cli.output import AsCsv, AsJson, clip_title, print_csv, print_json, print_table
 from app.cli.session import open_client
 
 if TYPE_CHECKING:
@@ -80,9 +80,9 @@ def list_clips(
     elif as_csv:
         _print_csv(clips)
     else:
-        columns = ("id", "name", "path", "person", "task", "state", "duration")
+        columns = ("id", "name", "person", "task", "state", "duration")
         rows = [
-            (c.id, c.name, short_path(c.path), c.person, c.task, c.state, c.duration) for c in clips
+            (c.id, clip_title(c.name, c.path), c.person, c.task, c.state, c.duration) for c in clips
         ]
         print_table(columns, rows, cut=("name", "person", "task"))
 

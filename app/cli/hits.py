@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from app.cli.output import print_csv, print_json, print_table, short_path
+from app.cli.output import clip_title, print_csv, print_json, print_table
 
 COLUMNS = (
     "rank",
@@ -37,14 +37,13 @@ def print_hits(hits: Any, times: Sequence[str], *, as_json: bool, as_csv: bool) 
         others = {"start", "end", "time"} - set(times)
         print_csv([name for name in COLUMNS if name not in others], hits.to_json()["items"])
     else:
-        columns = ("rank", "score", *times, "name", "path", "person", "task", "id")
+        columns = ("rank", "score", *times, "name", "person", "task", "id")
         rows = [
             (
                 hit.rank,
                 hit.score,
                 *(getattr(hit, name) for name in times),
-                hit.clip.name,
-                short_path(hit.clip.path),
+                clip_title(hit.clip.name, hit.clip.path),
                 hit.clip.person,
                 hit.clip.task,
                 hit.clip.id,

@@ -8,6 +8,7 @@ import os
 import sys
 import textwrap
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from pathlib import PurePosixPath
 from typing import Annotated, Any
 
 import typer
@@ -22,8 +23,8 @@ AsCsv = Annotated[bool, typer.Option("--csv", help="Print CSV (RFC 4180), with a
 MAX_WIDTH = 100
 """Characters in a line of the output for people."""
 
-MAX_PATH = 30
-"""Characters of a path in a table."""
+MAX_PATH, MAX_NARROW_PATH = 36, 14
+"""Characters of a path in a table; MAX_NARROW_PATH: if lines are shorter than MAX_WIDTH."""
 
 SMALLEST = 0.0005
 """Smaller positive numbers have no digit other than 0 among three decimals."""
@@ -80,11 +81,15 @@ def print_table(
     console.print(table)
 
 
-def short_path(path: str | None) -> str | None:
-    """A path for a table: its end, which tells files with one name apart."""
-    if path is None or len(path) <= MAX_PATH:
-        return path
-    return f"…{path[1 - MAX_PATH :]}"
+def clip_title(name: str, path: str | None) -> str:
+    """What a table calls a clip: the end of its path, which tells files with one name apart.
+
+    A name that somebody chose, and that is not that of the file, is the title itself.
+    """
+    if path is None or PurePosixPath(path).stem != name:
+        return name
+    most = MAX_PATH if console.width >= MAX_WIDTH else MAX_NARROW_PATH
+    return path if len(path) <= most else f"…{path[1 - most :]}"
 
 
 def progress_bar() -> Progress:

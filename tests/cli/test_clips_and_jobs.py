@@ -37,8 +37,8 @@ def test_clips_are_listed_in_three_forms(kinedex: Kinedex) -> None:
     assert [row["id"] for row in listed] == [clip["id"] for clip in found]
     assert listed[0]["words"].split() == found[0]["words"]
     lines = kinedex("clips", "list", *filters).out.splitlines()
-    assert lines[0].split() == ["id", "name", "path", "person", "task", "state", "duration"]
-    assert lines[1].split()[2] == found[0]["path"]
+    assert lines[0].split() == ["id", "name", "person", "task", "state", "duration"]
+    assert lines[1].split()[1] == found[0]["path"] == "ada/kick_01.bvh"
     assert [line.split()[0] for line in lines[1:]] == [clip["id"] for clip in found]
 
 
@@ -103,8 +103,9 @@ def test_metadata_are_set_shown_filtered_and_removed(kinedex: Kinedex) -> None:
 
 
 def test_clips_of_a_folder_are_listed(kinedex: Kinedex) -> None:
-    ids = _ids(kinedex, "--person", "ada", "--limit", "0")
-    assert sorted(_ids(kinedex, "--folder", "ada", "--limit", "0")) == sorted(ids)
+    clips = rows(kinedex("clips", "list", "--limit", "0", "--csv"))
+    of_ada = [clip["id"] for clip in clips if clip["path"].startswith("ada/")]
+    assert _ids(kinedex, "--folder", "ada", "--limit", "0") == of_ada != []
 
 
 def test_a_clip_is_deleted_only_if_the_user_agrees(kinedex: Kinedex, tmp_path: Path) -> None:

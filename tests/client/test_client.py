@@ -30,6 +30,9 @@ def test_a_list_is_fetched_page_by_page(client: Kinedex) -> None:
     assert len(list(some)) == 5
     assert list(client.clips.list(limit=0)) == []
     assert client.clips.list(task="nosuch").first() is None
+    of_ada = client.clips.list(task="kick", person="ada")
+    assert client.clips.list(task="kick", person="ada", limit=1).total() == len(list(of_ada)) > 0
+    assert client.labels.persons().total() >= 2
 
 
 def test_lists_and_searches_are_filtered_by_metadata(client: Kinedex) -> None:
