@@ -155,7 +155,10 @@ def _check_address(settings: Settings) -> Finding:
 def _check_extras() -> Iterator[Finding]:
     for extra, (module, purpose) in EXTRAS.items():
         if find_spec(module) is None:
-            advice = f"Install it if you need it: pip install 'kinedex[{extra}]'"
+            advice = (
+                "If you need it: in a checkout run `make install`; otherwise run "
+                f"`pip install {module}` for the Python of Kinedex."
+            )
             yield note("extras", f"`{extra}` is not installed ({purpose})", advice)
         else:
             yield fine("extras", f"`{extra}` is installed")
