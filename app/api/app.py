@@ -52,6 +52,7 @@ from app.api.routes import (
     synthesize,
     webhooks,
 )
+from app.api.schemas.pose import PoseSearch
 from app.api.schemas.recognition import Recognize
 from app.api.schemas.search import MotionSearch
 from app.api.schemas.synthesis import Synthesize
@@ -122,7 +123,11 @@ def create_app(settings: Settings) -> FastAPI:
         app.include_router(module.router)
     install_docs(app)
     install_pages(app)
-    describe(app, [MotionSearch, Recognize, Synthesize], lambda: example_values(app.state.library))
+    describe(
+        app,
+        [MotionSearch, PoseSearch, Recognize, Synthesize],
+        lambda: example_values(app.state.library),
+    )
     # The last one added is the outermost.
     app.add_middleware(Idempotency)
     app.add_middleware(BodyLimit, settings=settings)

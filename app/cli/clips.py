@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from app.cli.options import FilterJson, filter_of
-from app.cli.output import AsCsv, AsJson, print_csv, print_json, print_table
+from app.cli.options import FilterJson, filter_of, metadata_of
+from app.cli.output import AsCsv, AsJson, clip_title, print_csv, print_json, print_table
 from app.cli.session import open_client
 
 if TYPE_CHECKING:
-    from kinedex import Kinedex, Pages
     from kinedex.types.clips import Clip
 
 program = typer.Typer(help="List, show, label and delete stored clips.", no_args_is_help=True)
@@ -20,6 +19,7 @@ program = typer.Typer(help="List, show, label and delete stored clips.", no_args
 COLUMNS = (
     "id",
     "name",
+    "path",
     "state",
     "format",
     "person",
@@ -34,7 +34,9 @@ COLUMNS = (
     "created_at",
     "sha256",
 )
-"""The columns of a list of clips as CSV."""
+"""The columns of a list of clips as CSV; a column follows for each key of the metadata."""
+METADATA = "metadata."
+"""The beginning of the columns of metadata in flat rows."""
 ClipIds = Annotated[list[str], typer.Argument(help="Ids of clips.", metavar="CLIP_ID...")]
 
 
@@ -44,8 +46,19 @@ def list_clips(
     person: Annotated[list[str] | None, typer.Option(help="May be repeated.")] = None,
     task: Annotated[list[str] | None, typer.Option(help="May be repeated.")] = None,
     word: Annotated[list[str] | None, typer.Option(help="May be repeated.")] = None,
+    folder: Annotated[
+        list[str] | None, typer.Option(help="Folder of the import, and those below it.")
+    ] = None,
+    meta: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Metadata as KEY=VALUE; KEY.min=30 and KEY.max=40 for numbers; may be repeated."
+        ),
+    ] = None,
     state: Annotated[str | None, typer.Option(help="queued, processing, ready or failed.")] = None,
-    q: Annotated[str | None, typer.Option("-q", "--name", help="Part of the name.")] = None,
+    q: Annotated[
+        str | None, typer.Option("-q", "--name", help="Part of the name, path or metadata.")
+    ] = None,
     sort: Annotated[
         str,
         typer.Option(help="created_at, name, duration, person or task; -name for the reverse."),
@@ -56,18 +69,21 @@ def list_clips(
     as_csv: AsCsv = False,
 ) -> None:
     """List clips, the newest first."""
-    labels = {"person": person, "task": task, "word": word}
+    labels = {"person": person, "task": task, "word": word, "folder": folder}
+    given = {name: values for name, values in labels.items() if values}
+    filters = filter_of(filter_json) | given | _conditions(meta or [])
     others: dict[str, Any] = {"state": state, "q": q, "sort": sort, "limit": limit or None}
-    filters = filter_of(filter_json) | {name: values for name, values in labels.items() if values}
     with open_client(context) as client:
-        clips = list(_pages(client, filters, others))
+        clips = list(client.clips.list(filter=filters, **others))
     if as_json:
         print_json({"items": [clip.to_json() for clip in clips]})
     elif as_csv:
-        print_csv(COLUMNS, (clip.to_json() for clip in clips))
+        _print_csv(clips)
     else:
         columns = ("id", "name", "person", "task", "state", "duration")
-        rows = [(c.id, c.name, c.person, c.task, c.state, c.duration) for c in clips]
+        rows = [
+            (c.id, clip_title(c.name, c.path), c.person, c.task, c.state, c.duration) for c in clips
+        ]
         print_table(columns, rows, cut=("name", "person", "task"))
 
 
@@ -95,12 +111,18 @@ def label(
     ] = None,
     license: Annotated[str | None, typer.Option(help='The license; "" removes it.')] = None,
     source: Annotated[str | None, typer.Option(help='The source; "" removes it.')] = None,
+    meta: Annotated[
+        list[str] | None,
+        typer.Option(help="Metadata as KEY=VALUE; KEY= removes the key; may be repeated."),
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """Correct the labels of clips. Labels that are not given stay as they are."""
     labels = _given_labels(
         name=name, person=person, task=task, words=words, license=license, source=source
     )
+    if meta:
+        labels["metadata"] = metadata_of(meta)
     if not labels:
         raise typer.BadParameter("give at least one label, for example --task walk")
     with open_client(context) as client:
@@ -136,13 +158,23 @@ def _given_labels(**labels: str | None) -> dict[str, Any]:
     return changed
 
 
-def _pages(client: Kinedex, filters: dict[str, Any], others: dict[str, Any]) -> Pages[Clip]:
-    """The list of clips. The service checks the names of the filters, which users choose."""
-    from kinedex import Pages
-    from kinedex.calls.clips import list_clips
+def _conditions(pairs: Sequence[str]) -> dict[str, list[str]]:
+    """The conditions of a filter in texts like KEY=VALUE. A repeated key accepts several values."""
+    conditions: dict[str, list[str]] = {}
+    for pair in pairs:
+        key, equals, value = pair.partition("=")
+        if not equals or not key.strip():
+            raise typer.BadParameter(f"{pair!r}: write KEY=VALUE", param_hint="--meta")
+        conditions.setdefault(f"meta.{key.strip()}", []).append(value.strip())
+    return conditions
 
-    call = list_clips(**others)
-    return Pages(replace(call, query={**call.query, **filters}), client.send)
+
+def _print_csv(clips: Sequence[Clip]) -> None:
+    from kinedex.tables import flat
+
+    rows = [flat(clip.to_json()) for clip in clips]
+    keys = {name for row in rows for name in row if name.startswith(METADATA)}
+    print_csv((*COLUMNS, *sorted(keys)), rows)
 
 
 def _print_clips(clips: list[Clip], as_json: bool, *, is_one: bool) -> None:
@@ -162,6 +194,8 @@ def _details(clip: Clip) -> list[tuple[str, object]]:
         ("words", " ".join(clip.words) or None),
         ("license", clip.license),
         ("source", clip.source),
+        *((f"meta {key}", value) for key, value in clip.metadata.items()),
+        ("path", clip.path),
         ("format", clip.format),
         ("duration", None if clip.duration is None else f"{clip.duration:.2f} s"),
         ("frames", None if clip.frames is None else f"{clip.frames} at {clip.frame_rate:g} Hz"),

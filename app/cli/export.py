@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from app.analysis.low_dimensional.eigen_motion import Basis
+from app.cli.export_sources import Source, open_source
 from app.cli.files import write_whole
-from app.cli.options import FilterJson, filter_of
+from app.cli.options import FilterJson
 from app.cli.output import AsJson, print_json, progress_bar
-from app.cli.session import open_client
-from app.cli.settings import open_library, remote_of
 from app.errors import BadField
 from app.kinedex_error import Place
 from app.services.views.export_format import (
@@ -23,10 +22,6 @@ from app.services.views.export_format import (
     ExportSkeleton,
     ExportUnit,
 )
-
-if TYPE_CHECKING:
-    from app.services.library.library import Library
-    from kinedex import Kinedex
 
 
 def _print_definitions(requested: bool) -> None:
@@ -119,16 +114,12 @@ def export(
         "fps": fps,
         "reduction": None if dimensions is None else Reduction(dimensions, basis),
     }
-    if remote_of(context) is not None:
-        written = _export_from_service(context, clip_ids, filter_json, output, options)
-        _print_written(written, output, is_many=is_many, as_json=as_json)
-        return
-    with open_library(context) as lib:
+    with open_source(context) as source:
         if is_many or not clip_ids:
-            ids = _chosen(lib, clip_ids, filter_json)
-            written = _write_many(lib, ids, output or Path(), options)
+            ids = _chosen(source, clip_ids, filter_json)
+            written = _write_many(source, ids, output or Path(), options)
         else:
-            written = _write_one(lib, clip_ids[0], output, options)
+            written = _write_one(source, clip_ids[0], output, options)
     _print_written(written, output, is_many=is_many, as_json=as_json)
 
 
@@ -146,86 +137,12 @@ def _print_written(
         raise typer.Exit(1)
 
 
-def _export_from_service(
-    context: typer.Context,
-    clip_ids: Sequence[str] | None,
-    filter_json: str | None,
-    output: Path | None,
-    options: dict[str, Any],
-) -> dict[str, Any]:
-    """Export clips of the service at --url, as `_write_one` and `_write_many` do.
-
-    Raises kinedex.KinedexError for a single clip, and BadField.
-    """
-    from kinedex import KinedexError
-
-    target, query = options["format"], _export_query(options)
-    with open_client(context) as client:
-        if filter_json is None and len(clip_ids or ()) == 1:
-            (clip_id,) = clip_ids or ()
-            path = _remote_path(client.clips.get(clip_id).name, output, query, target)
-            size = write_whole(path, [client.clips.export(clip_id, target.value, **query)])
-            return {"path": str(path), "format": target.value, "bytes": size}
-        clips = _remote_clips(client, clip_ids, filter_json)
-        folder = _made_folder(output or Path())
-        files, left_out = [], []
-        for clip in clips:
-            try:
-                content = client.clips.export(clip.id, target.value, **query)
-            except KinedexError as problem:
-                left_out.append({"clip_id": clip.id, "reason": str(problem)})
-                typer.echo(f"{clip.id}: {problem}", err=True)
-                continue
-            # Ids keep files of equal names apart.
-            path = _remote_path(f"{clip.name}-{clip.id}", folder, query, target)
-            files.append(
-                {"clip_id": clip.id, "path": str(path), "bytes": write_whole(path, [content])}
-            )
-    return {"format": target.value, "files": files, "left_out": left_out}
-
-
-def _export_query(options: dict[str, Any]) -> dict[str, Any]:
-    """The parameters of the call, by name, without those that were not given."""
-    reduction = options["reduction"]
-    given = {name: options[name] for name in ("content", "unit", "joints", "skeleton", "fps")}
-    query = {
-        name: getattr(value, "value", value) for name, value in given.items() if value is not None
-    }
-    if reduction is not None:
-        query |= {"dimensions": reduction.dimensions, "basis": reduction.basis.value}
-    return query
-
-
-def _remote_clips(
-    client: Kinedex, clip_ids: Sequence[str] | None, filter_json: str | None
-) -> list[Any]:
-    if clip_ids and filter_json is not None:
-        raise _bad("filter", "goes without ids of clips")
-    if clip_ids:
-        return [client.clips.get(clip_id) for clip_id in clip_ids]
-    if filter_json is None:
-        raise _bad("clip_ids", "expected the id of a clip, or --filter")
-    return list(client.clips.list(state="ready", **filter_of(filter_json)))
-
-
-def _remote_path(
-    name: str, output: Path | None, query: dict[str, Any], target: ExportFormat
-) -> Path:
-    """The path of a file; `name`: of the clip, for a folder or without a path."""
-    if output is not None and not output.is_dir():
-        return output
-    safe = "".join(c if c.isalnum() or c in " ._-()+" else "_" for c in name).strip(" .")[:100]
-    part = f"-{query['content']}" if query.get("content") else ""
-    return (output or Path()) / f"{safe}{part}.{target.value}"
-
-
-def _made_folder(folder: Path) -> Path:
+def _made_folder(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as problem:
         message = f"{folder} is no folder and cannot be made: {problem.strerror}"
         raise _bad("output", message) from None
-    return folder
 
 
 def _usual_format(output: Path | None, content: ExportContent | None) -> ExportFormat:
@@ -240,26 +157,23 @@ def _usual_format(output: Path | None, content: ExportContent | None) -> ExportF
         raise _bad("output", f"must end with one of {known}, unless --format is given") from None
 
 
-def _chosen(lib: Library, clip_ids: Sequence[str] | None, filter_json: str | None) -> list[str]:
+def _chosen(
+    source: Source, clip_ids: Sequence[str] | None, filter_json: str | None
+) -> Sequence[str]:
     """The ids that are given, or those of the ready clips that pass the filter."""
-    from app.cli.evaluate.running import parsed_filter
-    from app.services.views.export_many import ready_ids
-
     if clip_ids and filter_json is not None:
         raise _bad("filter", "goes without ids of clips")
     if clip_ids:
-        return list(clip_ids)
+        return clip_ids
     if filter_json is None:
         raise _bad("clip_ids", "expected the id of a clip, or --filter")
-    return list(ready_ids(lib, parsed_filter(filter_json)))
+    return source.ready_ids(filter_json)
 
 
 def _write_one(
-    lib: Library, clip_id: str, output: Path | None, options: dict[str, Any]
+    source: Source, clip_id: str, output: Path | None, options: dict[str, Any]
 ) -> dict[str, Any]:
-    from app.services.views.export import export as export_clip
-
-    file = export_clip(lib, clip_id, **options)
+    file = source.one(clip_id, options)
     path = output or Path(file.file_name)
     if path.is_dir():
         path = path / file.file_name
@@ -268,15 +182,13 @@ def _write_one(
 
 
 def _write_many(
-    lib: Library, clip_ids: Sequence[str], folder: Path, options: dict[str, Any]
+    source: Source, clip_ids: Sequence[str], folder: Path, options: dict[str, Any]
 ) -> dict[str, Any]:
     """Write a file for each clip into the folder, and name those without one."""
-    from app.services.views.export_many import export_each
-
     _made_folder(folder)
     files, left_out = [], []
     with progress_bar() as bar:
-        each = export_each(lib, clip_ids, **options)
+        each = source.each(clip_ids, options)
         for one in bar.track(each, total=len(clip_ids), description="exporting"):
             if one.file is None:
                 left_out.append({"clip_id": one.clip_id, "reason": one.reason})

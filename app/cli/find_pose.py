@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import json
-import os
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
@@ -20,16 +18,12 @@ from app.cli.query_source import (
     Unit,
     UpAxis,
     naming_missing,
-    source_of,
+    query_of,
 )
 from app.cli.session import open_client
-from app.cli.settings import open_library, remote_of
-from app.errors import BadField, ConfigurationError
+from app.errors import BadField
 from app.kinedex_error import Place
 from app.search.pose.pose_matches import MatchesPerClip
-
-if TYPE_CHECKING:
-    from kinedex.types.pose import PoseHits as KinedexPoseHits
 
 
 def search_pose(
@@ -66,79 +60,24 @@ def search_pose(
         raise typer.BadParameter("give either a file or clip id with --time, or --positions")
     if query is not None and time is None:
         raise typer.BadParameter("--time is needed: the time of the pose in seconds")
-    fields, pose = filter_of(filter_json), _read_positions(positions)
-    options: Any = {"places": places.value, "limit": limit, "filter": fields or None}
-    options["include_self"] = include_self
-    if query is not None and os.path.lexists(query):
-        source = _File(query, skeleton, frame_rate, unit, up_axis, stack)
-        hits = _search_file(
-            context, source, _Options(time or 0.0, places, limit, fields, include_self)
-        )
-    else:
-        with open_client(context) as client, naming_missing(query or ""):
-            hits = client.search.pose(clip_id=query, time=time, positions=pose, **options)
+    hints: dict[str, Any] = {
+        "time": time,
+        "places": places.value,
+        "limit": limit,
+        "filter": filter_of(filter_json) or None,
+        "include_self": include_self,
+        "frame_rate": frame_rate,
+        "unit": unit,
+        "up_axis": up_axis,
+        "stack": stack,
+    }
+    pose = _read_positions(positions)
+    with open_client(context) as client, naming_missing(query or ""):
+        if query is None:
+            hits = client.search.pose(positions=pose, **hints)
+        else:
+            hits = client.search.pose(**query_of(query, skeleton=skeleton, **hints))
     print_hits(hits, ("time",), as_json=as_json, as_csv=as_csv)
-
-
-@dataclass(frozen=True, slots=True)
-class _File:
-    """A motion file that contains the pose, and hints to read it."""
-
-    path: str
-    skeleton: Path | None
-    frame_rate: float | None
-    unit: str | None
-    up_axis: str | None
-    stack: str | None
-
-
-@dataclass(frozen=True, slots=True)
-class _Options:
-    """The options of a search by pose. time: seconds from the start of the file."""
-
-    time: float
-    places: MatchesPerClip
-    limit: int
-    fields: dict[str, Any]
-    include_self: bool
-
-
-def _search_file(context: typer.Context, file: _File, options: _Options) -> KinedexPoseHits:
-    """Search with a pose of a file, in the local library: the API takes no file for this search.
-
-    Raises ConfigurationError with --url.
-    """
-    from app.api.schemas.pose import PoseHits
-    from app.services.find.by_pose import PoseQuery, find_pose
-    from kinedex.types.pose import PoseHits as KinedexPoseHits
-
-    if remote_of(context) is not None:
-        raise ConfigurationError(
-            "A service takes no file for a search by pose. Import the file first, and give the id "
-            "of its clip; or give --positions."
-        )
-    with (
-        open_library(context) as lib,
-        source_of(
-            file.path,
-            skeleton=file.skeleton,
-            frame_rate=file.frame_rate,
-            unit=file.unit,
-            up_axis=file.up_axis,
-            stack=file.stack,
-        ) as source,
-    ):
-        query = PoseQuery(
-            source,
-            options.time,
-            None,
-            options.places,
-            options.limit,
-            options.fields,
-            options.include_self,
-        )
-        found = PoseHits.model_validate(find_pose(lib, query))
-    return KinedexPoseHits.from_json(found.model_dump(mode="json"))
 
 
 def _read_positions(path: Path | None) -> list[Any] | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from app.cli.output import print_csv, print_json, print_table
+from app.cli.output import clip_title, print_csv, print_json, print_table
 
 COLUMNS = (
     "rank",
@@ -16,6 +16,7 @@ COLUMNS = (
     "time",
     "clip.id",
     "clip.name",
+    "clip.path",
     "clip.person",
     "clip.task",
     "clip.words",
@@ -42,7 +43,7 @@ def print_hits(hits: Any, times: Sequence[str], *, as_json: bool, as_csv: bool) 
                 hit.rank,
                 hit.score,
                 *(getattr(hit, name) for name in times),
-                hit.clip.name,
+                clip_title(hit.clip.name, hit.clip.path),
                 hit.clip.person,
                 hit.clip.task,
                 hit.clip.id,

@@ -139,9 +139,16 @@ def _show_differences(files: Files, result: dict[str, Any]) -> None:
 
 def _show_skipped(files: Files, result: dict[str, Any]) -> None:
     if result["skipped"]:
-        names = [file.path for file in islice(files("skipped"), MAX_LISTED)]
+        names = [_skipped_name(file) for file in islice(files("skipped"), MAX_LISTED)]
         more = "" if len(names) == result["skipped"] else ", ..."
         print_text(f"Skipped, because they are no motions: {', '.join(names)}{more}")
+
+
+def _skipped_name(file: Any) -> str:
+    from app.services.imports.folders import LEFT_OUT
+
+    is_library = file.error is not None and file.error["detail"] == LEFT_OUT
+    return f"{file.path}/ (a library of Kinedex)" if is_library else str(file.path)
 
 
 def _show_remarks(files: Files, result: dict[str, Any]) -> None:

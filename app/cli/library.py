@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from app.cli.options import metadata_of
 from app.cli.output import AsJson, print_json, progress_bar
 from app.cli.settings import open_library, remote_of
 from app.cli.working import working_on
@@ -106,19 +106,6 @@ def import_clips(
             typer.echo(f"{job.id}: registered; a worker analyzes the clips.")
     if code := import_report.exit_code(job):
         raise typer.Exit(code)
-
-
-def metadata_of(pairs: Sequence[str]) -> dict[str, Any]:
-    """The metadata in texts like KEY=VALUE; an empty value is None. Raises BadParameter."""
-    from app.store.clips.metadata_values import from_cell
-
-    metadata: dict[str, Any] = {}
-    for pair in pairs:
-        key, equals, value = pair.partition("=")
-        if not equals or not key.strip():
-            raise typer.BadParameter(f"{pair!r}: write KEY=VALUE", param_hint="--meta")
-        metadata[key.strip()] = from_cell(value.strip()) if value.strip() else None
-    return metadata
 
 
 def register(lib: Library, path: Path, options: ImportOptions | None = None) -> JobRecord:

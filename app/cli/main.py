@@ -13,13 +13,14 @@ from app import __version__
 from app.cli.commands import COMMANDS, NEEDS_THIS_MACHINE
 from app.cli.lazy import lazy_group
 from app.cli.settings import remember, remote_of
-from app.errors import ClipNotFound, ConfigurationError
+from app.errors import ClipNotFound, ConfigurationError, Unauthorized
 from app.kinedex_error import KinedexError
 
 FAILURE = 1
 PARTS_OF_REQUESTS = frozenset({"body", "query", "path", "header"})
 """The first part of a location in a problem of the API. It means nothing to a user of commands."""
 
+KEY_ADVICE = "Give a key with --api-key or KINEDEX_API_KEY; `kinedex keys create` makes one."
 OPTIONS_OF_ALL = frozenset({"--data-dir", "--database-url", "--url", "--api-key"})
 
 program = typer.Typer(
@@ -109,6 +110,8 @@ def _message(failure: Exception) -> list[str] | None:
         return [failure.detail, *_other_places(failure.detail, failure.places)]
     client = sys.modules.get("kinedex")  # it is imported only by commands that use it
     if client is not None and isinstance(failure, client.KinedexError):
+        if failure.code == Unauthorized.code:
+            return [failure.detail, KEY_ADVICE]
         return [failure.detail, *_other_places(failure.detail, failure.errors)]
     if isinstance(failure, OSError):
         # a user can fix these (permissions, a full disk), so no traceback is shown
@@ -117,9 +120,10 @@ def _message(failure: Exception) -> list[str] | None:
 
 
 def _other_places(detail: str, places: Any) -> list[str]:
-    """A line for each place of a failure that its detail does not contain already."""
-    lines = [f"{_location(place.location)}{place.message}" for place in places]
-    return [line for line in lines if line not in detail]
+    """A line for each place of a failure whose message the detail does not end with already."""
+    said = detail.rstrip(".")
+    others = [place for place in places if not said.endswith(place.message.rstrip("."))]
+    return [f"{_location(place.location)}{place.message}" for place in others]
 
 
 def _location(location: str) -> str:

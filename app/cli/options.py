@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from typing import Annotated, Any
 
 import typer
@@ -41,3 +42,16 @@ def filter_of(text: str | None) -> dict[str, Any]:
     if not isinstance(fields, dict):
         raise BadField("The filter must be a JSON object.", places=[Place("filter", str(text))])
     return fields
+
+
+def metadata_of(pairs: Sequence[str]) -> dict[str, Any]:
+    """The metadata in texts like KEY=VALUE; an empty value is None. Raises BadParameter."""
+    from app.store.clips.metadata_values import from_cell
+
+    metadata: dict[str, Any] = {}
+    for pair in pairs:
+        key, equals, value = pair.partition("=")
+        if not equals or not key.strip():
+            raise typer.BadParameter(f"{pair!r}: write KEY=VALUE", param_hint="--meta")
+        metadata[key.strip()] = from_cell(value.strip()) if value.strip() else None
+    return metadata

@@ -8,6 +8,7 @@ import os
 import sys
 import textwrap
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from pathlib import PurePosixPath
 from typing import Annotated, Any
 
 import typer
@@ -21,6 +22,9 @@ AsCsv = Annotated[bool, typer.Option("--csv", help="Print CSV (RFC 4180), with a
 
 MAX_WIDTH = 100
 """Characters in a line of the output for people."""
+
+MAX_PATH, MAX_NARROW_PATH = 36, 14
+"""Characters of a path in a table; MAX_NARROW_PATH: if lines are shorter than MAX_WIDTH."""
 
 SMALLEST = 0.0005
 """Smaller positive numbers have no digit other than 0 among three decimals."""
@@ -77,14 +81,27 @@ def print_table(
     console.print(table)
 
 
+def clip_title(name: str, path: str | None) -> str:
+    """What a table calls a clip: the end of its path, which tells files with one name apart.
+
+    A name that somebody chose, and that is not that of the file, is the title itself.
+    """
+    if path is None or PurePosixPath(path).stem != name:
+        return name
+    most = MAX_PATH if console.width >= MAX_WIDTH else MAX_NARROW_PATH
+    return path if len(path) <= most else f"…{path[1 - most :]}"
+
+
 def progress_bar() -> Progress:
     """A progress bar on standard error. Without a terminal, it prints nothing."""
+    errors = Console(stderr=True)
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),
         TaskProgressColumn(),
         TimeRemainingColumn(),
-        console=Console(stderr=True),
+        console=errors,
+        disable=not errors.is_terminal,
     )
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import tempfile
 import zipfile
 from collections.abc import Iterator
@@ -19,6 +18,7 @@ from app.cli.output import print_json, progress_bar
 from app.cli.session import open_client
 from app.errors import BadField
 from app.kinedex_error import Place
+from app.services.imports.folders import content_of
 
 if TYPE_CHECKING:
     from kinedex import Kinedex
@@ -51,20 +51,24 @@ def import_to_service(
 
 def _upload(client: Kinedex, path: Path, given: dict[str, Any]) -> Job | None:
     """The job that analyzes the files; None if the service already had the file."""
-    if "metadata" in given:
-        given = {**given, "metadata": json.dumps(given["metadata"])}
     with progress_bar() as bar:
         if path.is_file() and not _is_archive(path):
             task = bar.add_task("uploading", total=path.stat().st_size)
-            return client.clips.upload(path, progress=_shows(bar, task), **_of_one_file(given)).job
+            fields = _of_one_file(path, given)
+            return client.clips.upload(path, progress=_shows(bar, task), **fields).job
         with _archive_of(path, bar) as archive:
             task = bar.add_task("uploading", total=archive.stat().st_size)
             return client.clips.upload_archive(archive, progress=_shows(bar, task), **given).job
 
 
-def _of_one_file(given: dict[str, Any]) -> dict[str, Any]:
+def _of_one_file(path: Path, given: dict[str, Any]) -> dict[str, Any]:
     """The fields of the upload of one file, whose path has no folders that could be labels."""
+    from app.services.imports.skeleton_pairs import skeleton_beside
+
     fields = {name: value for name, value in given.items() if name not in ("labels", "overwrite")}
+    skeleton = skeleton_beside(path)
+    if skeleton is not None:
+        fields["skeleton"] = skeleton
     return fields | {"on_conflict": "update" if given.get("overwrite") else "keep"}
 
 
@@ -78,21 +82,20 @@ def _is_archive(path: Path) -> bool:
 
 @contextmanager
 def _archive_of(path: Path, bar: Progress) -> Iterator[Path]:
-    """The ZIP at `path`, or a temporary ZIP of the folder. Hidden files are left out."""
+    """The ZIP at `path`, or a temporary ZIP of the files that `content_of` finds."""
     if path.is_file():
         yield path
         return
-    files = sorted(one for one in path.rglob("*") if one.is_file() and not _is_hidden(one, path))
+    content = content_of(path)
+    for library in content.libraries:
+        typer.echo(f"{library} is left out: it is a library of Kinedex.", err=True)
     with tempfile.TemporaryDirectory(prefix="kinedex-") as folder:
         archive = Path(folder, f"{path.resolve().name or 'import'}.zip")
         with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED, compresslevel=FAST) as zipped:
-            for file in bar.track(files, description="packing"):
-                zipped.write(file, file.relative_to(path))
+            for file in bar.track(content.files, description="packing"):
+                if file.is_file():
+                    zipped.write(file, file.relative_to(path))
         yield archive
-
-
-def _is_hidden(file: Path, folder: Path) -> bool:
-    return any(part.startswith(".") for part in file.relative_to(folder).parts)
 
 
 def _print(client: Kinedex, job: Job | None, *, as_json: bool) -> None:

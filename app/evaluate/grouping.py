@@ -11,7 +11,7 @@ from app.store.clips.metadata_values import as_text
 from app.store.clips.record import META, ClipRecord
 
 LABELS = ("person", "task", "license", "source", "folder", "format")
-NO_VALUE = "-"
+NO_VALUE = "(none)"
 """The group of the clips without a value."""
 MAX_GROUPS = 100
 """Largest number of groups with figures; the largest groups are shown."""
@@ -38,6 +38,17 @@ class Grouping:
             value = clip.metadata.get(self.by.removeprefix(META))
             return NO_VALUE if value is None else as_text(value)
         return getattr(clip, self.by) or NO_VALUE
+
+    def groups(self, clips: Sequence[ClipRecord]) -> list[str]:
+        """The group of each clip. Raises BadField if no clip has the key of the metadata."""
+        found = [self.group(clip) for clip in clips]
+        if clips and self.by.startswith(META) and set(found) == {NO_VALUE}:
+            keys = sorted({key for clip in clips for key in clip.metadata})
+            known = f"their keys are {', '.join(keys)}" if keys else "they have no metadata"
+            raise fields.bad_field(
+                "by", f"no clip has {self.by.removeprefix(META)!r} in its metadata; {known}"
+            )
+        return found
 
 
 def grouped(groups: Sequence[str], items: Sequence[Item]) -> dict[str, list[Item]]:

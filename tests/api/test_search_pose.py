@@ -37,6 +37,43 @@ def test_thirteen_positions(demo: httpx2.Client) -> None:
     assert {hit["clip"]["task"] for hit in reply["items"]} == {"wave"}
 
 
+def test_the_pose_of_an_uploaded_file(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    content = demo.get(f"/v1/clips/{walk['id']}/file").content
+    form = {"time": "0.5", "limit": "3", "filter": '{"task": "walk"}'}
+    answer = demo.post("/v1/search/pose", data=form, files={"file": ("walk.bvh", content)})
+    assert answer.status_code == 200, answer.text
+    stored = _search(demo, clip_id=walk["id"], time=0.5, limit=3, filter={"task": "walk"})
+    assert [hit["clip"]["id"] for hit in answer.json()["items"]] == [
+        hit["clip"]["id"] for hit in stored["items"]
+    ]
+    itself = form | {"include_self": "true"}
+    hits = demo.post("/v1/search/pose", data=itself, files={"file": ("walk.bvh", content)}).json()
+    assert hits["items"][0]["clip"]["id"] == walk["id"]
+
+
+@pytest.mark.parametrize(
+    ("form", "has_file", "location"),
+    [
+        ({}, True, "body.time"),
+        ({"time": "99"}, True, "body.time"),
+        ({"time": "0.5"}, False, "body.file"),
+        ({"time": "0.5", "clip_id": "clip_x"}, True, "body.clip_id"),
+        ({"time": "0.5", "positions": "[]"}, True, "body.positions"),
+    ],
+)
+def test_wrong_fields_of_a_form_are_named(
+    demo: httpx2.Client,
+    walk: dict[str, Any],
+    form: dict[str, str],
+    has_file: bool,
+    location: str,
+) -> None:
+    content = demo.get(f"/v1/clips/{walk['id']}/file").content
+    files = {"file" if has_file else "skeleton": ("walk.bvh", content)}
+    answer = demo.post("/v1/search/pose", data=form, files=files)
+    assert_problem(answer, 422, "bad_field", location)
+
+
 def test_all_times_of_a_pose_come_page_by_page(demo: httpx2.Client, walk: dict[str, Any]) -> None:
     asked = {"clip_id": walk["id"], "time": 0.5, "places": "all", "include_self": True}
     whole = _search(demo, **asked, limit=1000)

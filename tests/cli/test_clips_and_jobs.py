@@ -38,6 +38,7 @@ def test_clips_are_listed_in_three_forms(kinedex: Kinedex) -> None:
     assert listed[0]["words"].split() == found[0]["words"]
     lines = kinedex("clips", "list", *filters).out.splitlines()
     assert lines[0].split() == ["id", "name", "person", "task", "state", "duration"]
+    assert lines[1].split()[1] == found[0]["path"] == "ada/kick_01.bvh"
     assert [line.split()[0] for line in lines[1:]] == [clip["id"] for clip in found]
 
 
@@ -69,6 +70,42 @@ def test_labels_are_corrected_and_removed(kinedex: Kinedex) -> None:
     missing = kinedex("clips", "show", "nosuch")
     assert (missing.code, missing.out) == (FAILURE, "")
     assert missing.err.count("nosuch") == 1
+
+
+def test_metadata_are_set_shown_filtered_and_removed(kinedex: Kinedex) -> None:
+    (clip,) = _ids(kinedex, "--task", "wave", "--person", "bruno", "--limit", "1")
+    set_two = ("--meta", "condition=tired", "--meta", "age=30")
+    changed = kinedex("clips", "label", clip, *set_two, "--json").json()
+    assert changed["metadata"] == {"condition": "tired", "age": 30}
+    try:
+        shown = dict(
+            line.split(maxsplit=2)[1:]
+            for line in kinedex("clips", "show", clip).out.splitlines()
+            if line.startswith("meta ")
+        )
+        assert {key: value.strip() for key, value in shown.items()} == {
+            "age": "30",
+            "condition": "tired",
+        }
+        for words in (("condition=rested", "condition=tired"), ("age.min=30", "age.max=30")):
+            conditions = [word for one in words for word in ("--meta", one)]
+            (row,) = rows(kinedex("clips", "list", *conditions, "--csv"))
+            assert (row["id"], row["metadata.condition"], row["metadata.age"]) == (
+                clip,
+                "tired",
+                "30",
+            )
+        assert _ids(kinedex, "--meta", "age.min=31") == []
+        assert kinedex("clips", "list", "--meta", "age").code == USAGE
+    finally:
+        kinedex("clips", "label", clip, "--meta", "condition=", "--meta", "age=")
+    assert kinedex("clips", "show", clip, "--json").json()["metadata"] == {}
+
+
+def test_clips_of_a_folder_are_listed(kinedex: Kinedex) -> None:
+    clips = rows(kinedex("clips", "list", "--limit", "0", "--csv"))
+    of_ada = [clip["id"] for clip in clips if clip["path"].startswith("ada/")]
+    assert _ids(kinedex, "--folder", "ada", "--limit", "0") == of_ada != []
 
 
 def test_a_clip_is_deleted_only_if_the_user_agrees(kinedex: Kinedex, tmp_path: Path) -> None:

@@ -56,7 +56,7 @@ def test_hits_are_printed_as_a_table(kinedex: Kinedex, folder: Path) -> None:
     assert ended.code == 0
     lines = ended.out.splitlines()
     assert lines[0].split() == ["rank", "score", "name", "person", "task", "id"]
-    assert lines[1].split()[:5] == ["1", "1.000", "walk_01", "ada", "walk"]
+    assert lines[1].split()[:5] == ["1", "1.000", "ada/walk_01.bvh", "ada", "walk"]
     assert len(lines) == 3
 
 
@@ -102,11 +102,15 @@ def test_a_query_in_two_files_and_one_of_several_animations(
     takes = person_takes({"bow": 1.0, "sway": 2.0})
     for name, content in (("07.asf", asf), ("07_01.amc", amc), ("takes.fbx", takes)):
         (tmp_path / name).write_bytes(content)
-    pair = (str(tmp_path / "07_01.amc"), "--skeleton", str(tmp_path / "07.asf"))
+    alone = tmp_path / "alone" / "07_01.amc"
+    alone.parent.mkdir()
+    alone.write_bytes(amc)
+    pair = (str(alone), "--skeleton", str(tmp_path / "07.asf"))
     stack = (str(tmp_path / "takes.fbx"), "--stack")
     for command in ("search", "recognize"):
         assert kinedex(command, *pair).code == 0
         assert kinedex(command, *stack, "bow").code == 0
+        assert kinedex(command, str(tmp_path / "07_01.amc")).code == 0  # 07.asf is beside it
         assert "`skeleton`" in _refused(kinedex, command, pair[0])
         assert "(bow, sway), found 'run'" in _refused(kinedex, command, *stack, "run")
     one, other = (kinedex("search", *stack, n, "--json").json()["items"] for n in ("bow", "sway"))

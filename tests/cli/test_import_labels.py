@@ -81,6 +81,30 @@ def test_a_wrong_option_is_refused_before_anything_is_stored(
     assert ended.out == ""
 
 
+def test_the_library_itself_is_left_out(kinedex_alone: Kinedex, mocap: Path) -> None:
+    inside = {"data_dir": mocap / "library"}
+    first = kinedex_alone("import", str(mocap), **inside)
+    assert "4 files: 2 new, 0 updated, 0 unchanged, 2 skipped." in first.out
+    assert "library/ (a library of Kinedex), notes.txt" in first.out
+    again = kinedex_alone("import", str(mocap), **inside)
+    assert "4 files: 0 new, 0 updated, 2 unchanged, 2 skipped." in again.out
+    refused = kinedex_alone("import", str(mocap / "library"), **inside)
+    assert (refused.code, "is the folder of a library" in refused.err) == (1, True)
+
+
+def test_without_a_terminal_there_is_no_progress_bar(kinedex_alone: Kinedex, mocap: Path) -> None:
+    assert kinedex_alone("import", str(mocap)).err == ""
+
+
+def test_an_error_of_a_manifest_is_printed_once(kinedex_alone: Kinedex, mocap: Path) -> None:
+    (mocap / "manifest.csv").write_text("path,tsak\nelin/walk/01.bvh,walk\n")
+    refused = kinedex_alone("import", str(mocap))
+    assert refused.err.splitlines() == [
+        "kinedex: manifest.csv cannot be read: line 1: `tsak` is not the name of a field; is `task`"
+        " meant? If it is metadata of your own, write `meta.tsak`."
+    ]
+
+
 def test_warnings_are_summed_up(kinedex_alone: Kinedex, tmp_path: Path) -> None:
     (clip,) = demo_clips(["elin"], ["jump"], takes=1)
     text = clip.content.decode()

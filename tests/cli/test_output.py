@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from app.cli import output
 from app.cli.output import MAX_WIDTH, print_table, print_text
 
 
@@ -40,3 +41,20 @@ def test_long_text_is_wrapped_between_words(capsys: pytest.CaptureFixture[str]) 
     assert len(long) > 1
     assert max(map(len, long)) <= MAX_WIDTH
     assert set(" ".join(long).split()) == {"walk-left\N{REPLACEMENT CHARACTER}"}
+
+
+@pytest.mark.parametrize(
+    ("width", "name", "path", "title"),
+    [
+        (100, "001", "lab/anna/001.bvh", "lab/anna/001.bvh"),
+        (80, "001", "lab/anna/001.bvh", "…/anna/001.bvh"),
+        (100, "001", f"{'x' * 40}/001.bvh", f"…{'x' * 27}/001.bvh"),
+        (100, "high kick", "lab/anna/001.bvh", "high kick"),
+        (100, "001", None, "001"),
+    ],
+)
+def test_the_title_of_a_clip_tells_files_with_one_name_apart(
+    monkeypatch: pytest.MonkeyPatch, width: int, name: str, path: str | None, title: str
+) -> None:
+    monkeypatch.setattr(output.console, "width", width)
+    assert output.clip_title(name, path) == title

@@ -10,6 +10,7 @@ import pytest
 from app.cli.commands import NEEDS_THIS_MACHINE
 from app.demo import DemoClip, demo_clips
 from tests.cli.conftest import Kinedex
+from tests.formats.acclaim.files import acclaim_person
 from tests.live import Live, serve
 
 
@@ -55,6 +56,65 @@ def test_a_single_file_and_nothing(kinedex: Kinedex, demo_service: Live, tmp_pat
     assert "There is no file or folder" in missing.err
 
 
+def test_an_amc_file_takes_the_skeleton_beside_it(
+    kinedex: Kinedex, demo_service: Live, tmp_path: Path
+) -> None:
+    skeleton, content, _ = acclaim_person(frames=60, seed=9)
+    (tmp_path / "91.asf").write_bytes(skeleton)
+    motion = tmp_path / "91_07.amc"
+    motion.write_bytes(content)
+    url = ("--url", demo_service.url)
+    assert kinedex("search", str(motion), "--limit", "1", *url).code == 0
+    assert kinedex("import", str(motion), *url).out == "The clip is in the library.\n"
+    (clip,) = kinedex("clips", "list", "-q", motion.stem, "--json", *url).json()["items"]
+    assert kinedex("clips", "delete", clip["id"], "--yes", *url).code == 0
+
+
+def test_the_pose_of_a_file_is_found(kinedex: Kinedex, demo_service: Live, folder: Path) -> None:
+    file = str(folder / "ada" / "kick_01.bvh")
+    asked = ("search-pose", file, "--time", "0.8", "--limit", "2", "--json")
+    found = kinedex(*asked, "--url", demo_service.url).json()
+    assert [hit["rank"] for hit in found["items"]] == [1, 2]
+
+
+def test_exports_are_those_of_the_library(
+    kinedex: Kinedex, demo_service: Live, tmp_path: Path
+) -> None:
+    url = ("--url", demo_service.url)
+    walks = kinedex("clips", "list", "--task", "walk", "--limit", "2", "--json", *url).json()
+    ids = [clip["id"] for clip in walks["items"]]
+    for words in (("--fps", "10"), ("--content", "gait"), ("--dimensions", "2"), ("--unit", "m")):
+        names = []
+        for source in (url, ("--data-dir", str(demo_service.data_dir))):
+            folder = tmp_path / "-".join((*words, source[0]))
+            folder.mkdir()
+            assert kinedex("export", ids[0], "-o", str(folder), *words, *source).code == 0
+            (file,) = folder.iterdir()
+            names.append((file.name, file.read_bytes()))
+        assert names[0] == names[1]
+    many = kinedex("export", "clip_none", *ids, "-o", str(tmp_path / "many"), "--json", *url).json()
+    assert [one["clip_id"] for one in many["files"]] == ids
+    assert [one["clip_id"] for one in many["left_out"]] == ["clip_none"]
+    chosen = ("--filter", '{"task": "walk", "meta.nosuch": 1}', "-o", str(tmp_path / "none"))
+    assert kinedex("export", *chosen, *url).code == 1
+    refused = kinedex(
+        "export",
+        *ids,
+        "--unit",
+        "m",
+        "--format",
+        "csv",
+        "--content",
+        "segments",
+        "--fps",
+        "10",
+        "-o",
+        str(tmp_path / "bad"),
+        *url,
+    )
+    assert (refused.code, "fps: must be left out" in refused.err) == (1, True)
+
+
 def test_a_service_with_keys(kinedex: Kinedex, tmp_path: Path) -> None:
     data_dir = tmp_path / "data"
     with serve(data_dir) as live:
@@ -63,7 +123,9 @@ def test_a_service_with_keys(kinedex: Kinedex, tmp_path: Path) -> None:
             for role in ("read", "write")
         }
         refused = kinedex("clips", "list", url=live.url)
-        assert (refused.code, refused.err) == (1, "kinedex: An API key is needed\n")
+        assert refused.code == 1
+        assert refused.err.splitlines()[0] == "kinedex: An API key is needed"
+        assert "--api-key" in refused.err
         read = {"url": live.url, "api_key": made["read"]["key"]}
         assert kinedex("clips", "list", "--json", **read).json() == {"items": []}
         assert "write" in kinedex("fit", **read).err

@@ -24,6 +24,7 @@ def test_lists_searches_and_uploads(demo_service: Live, take: DemoClip) -> None:
             kicks = [clip async for clip in client.clips.list(task="kick", limit=3)]
             assert len(kicks) == 3
             assert await client.clips.list(task="nosuch").first() is None
+            assert await client.clips.list(task="nosuch").total() == 0
             found = await asyncio.gather(
                 client.search.motion(kicks[0].id, limit=1),
                 client.search.motion(file=("query.bvh", take.content), limit=1),

@@ -30,6 +30,25 @@ def test_a_list_is_fetched_page_by_page(client: Kinedex) -> None:
     assert len(list(some)) == 5
     assert list(client.clips.list(limit=0)) == []
     assert client.clips.list(task="nosuch").first() is None
+    of_ada = client.clips.list(task="kick", person="ada")
+    assert client.clips.list(task="kick", person="ada", limit=1).total() == len(list(of_ada)) > 0
+    assert client.labels.persons().total() >= 2
+
+
+def test_lists_and_searches_are_filtered_by_metadata(client: Kinedex) -> None:
+    clip = _kick(client)
+    client.clips.update(clip, metadata={"condition": "tired", "age": 30})
+    try:
+        for condition in ({"meta.condition": "tired"}, {"meta.age.min": 20, "meta.age.max": 30}):
+            assert [one.id for one in client.clips.list(task="kick", filter=condition)] == [clip]
+            hits = client.search.motion(clip, filter=condition, include_self=True)
+            assert [hit.clip.id for hit in hits] == [clip]
+            assert clip in {point.clip_id for point in client.search.space(filter=condition)}
+        manifest = client.labels.manifest(filter={"meta.condition": "tired"}).decode()
+        assert manifest.splitlines()[1].endswith("30,tired")
+        assert client.clips.list(filter={"meta.age.min": 31}).first() is None
+    finally:
+        client.clips.update(clip, metadata=None)
 
 
 def test_values_have_types_and_give_the_answer_back(client: Kinedex, demo_service: Live) -> None:
@@ -78,8 +97,13 @@ def test_an_upload_shows_its_progress_and_its_job_can_be_awaited(
     path.write_bytes(take.content)
     sent: list[tuple[int, int]] = []
     created = client.clips.upload(
-        path, task="bow", words=["bow", "deep"], progress=lambda *seen: sent.append(seen)
+        path,
+        task="bow",
+        words=["bow", "deep"],
+        metadata={"age": 30},
+        progress=lambda *seen: sent.append(seen),
     )
+    assert created.clip.metadata == {"age": 30}
     assert sent[-1] == (len(take.content), len(take.content))
     assert created.job is not None
     states = []

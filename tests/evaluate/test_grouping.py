@@ -43,6 +43,19 @@ def test_an_unknown_grouping_is_refused() -> None:
         Grouping.of("persn")
 
 
+def test_a_key_that_no_clip_has_is_refused() -> None:
+    grouping = Grouping.of("meta.conditoin")
+    assert grouping is not None
+    assert grouping.groups([]) == []
+    with pytest.raises(BadField, match=r"no clip has 'conditoin'.*their keys are age, condition"):
+        grouping.groups([CLIP])
+    with pytest.raises(BadField, match="they have no metadata"):
+        grouping.groups([dataclasses.replace(CLIP, metadata={})])
+    known = Grouping.of("meta.age")
+    assert known is not None
+    assert known.groups([CLIP, dataclasses.replace(CLIP, metadata={})]) == ["30", NO_VALUE]
+
+
 def test_the_largest_groups_come_first_and_there_is_a_limit() -> None:
     assert grouped(["b", "a", "b"], [1, 2, 3]) == {"b": [1, 3], "a": [2]}
     assert (

@@ -168,9 +168,15 @@ def problem_of_validation(found: Iterable[ErrorDetails | Mapping[str, Any]]) -> 
     details = list(found)
     if any(_whole_body_is_not_json(detail) for detail in details):
         return problem_of(MalformedBody("The body is not valid JSON."))
-    # pydantic puts this prefix before the messages of our own validators.
-    places = [Place(location_of(d["loc"]), d["msg"].removeprefix("Value error, ")) for d in details]
+    places = [Place(location_of(detail["loc"]), _message_of(detail)) for detail in details]
     return problem_of(errors.BadField("The request has fields that are wrong.", places=places))
+
+
+def _message_of(detail: ErrorDetails | Mapping[str, Any]) -> str:
+    if detail["type"] == "extra_forbidden":
+        return "This call has no such field."
+    # pydantic puts this prefix before the messages of our own validators
+    return str(detail["msg"]).removeprefix("Value error, ")
 
 
 def _whole_body_is_not_json(detail: ErrorDetails | Mapping[str, Any]) -> bool:

@@ -126,7 +126,8 @@ def _check_store(store: Store) -> Iterator[Finding]:
         yield fine("files", f"all {len(needed)} stored files are there")
     if clips.get("failed"):
         advice = "`kinedex clips list --state failed` lists them, `clips show` says why."
-        yield note("clips", f"{clips['failed']} clips could not be analyzed", advice)
+        noun = "clip" if clips["failed"] == 1 else "clips"
+        yield note("clips", f"{clips['failed']} {noun} could not be analyzed", advice)
     now = datetime.now(UTC)
     yield check_queue([(j.kind, j.state, j.count, (now - j.oldest).total_seconds()) for j in jobs])
 
@@ -155,7 +156,10 @@ def _check_address(settings: Settings) -> Finding:
 def _check_extras() -> Iterator[Finding]:
     for extra, (module, purpose) in EXTRAS.items():
         if find_spec(module) is None:
-            advice = f"Install it if you need it: pip install 'kinedex[{extra}]'"
+            advice = (
+                "If you need it: in a checkout run `make install`; otherwise run "
+                f"`pip install {module}` for the Python of Kinedex."
+            )
             yield note("extras", f"`{extra}` is not installed ({purpose})", advice)
         else:
             yield fine("extras", f"`{extra}` is installed")

@@ -17,7 +17,7 @@ def document(found: RecognitionEvaluation) -> dict[str, Any]:
     return {
         "clips": {
             "judged": len(found.clips),
-            "unlabelled": found.clips.unlabeled,
+            "unlabeled": found.clips.unlabeled,
             "persons": names_of(found.clips.persons),
             "tasks": names_of(found.clips.tasks),
             "sources": names_of(found.clips.sources),
@@ -45,7 +45,7 @@ def _held_out(held: HeldOut) -> dict[str, Any]:
         "chance": dict(zip(("person", "task", "both"), held.chance, strict=True)),
         "methods": {
             judged.method: {
-                "recognised": _recognized(judged.recognized),
+                "recognized": _recognized(judged.recognized),
                 "of_what_is_new": _recognized(judged.of_new),
                 "by_name": {name: _recognized(one) for name, one in judged.by_name.items() if name},
                 "by_group": {name: _recognized(one) for name, one in judged.by_group.items()},

@@ -126,7 +126,7 @@ def _document(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> dict[str
             "k": found.k,
             "methods": {one.figures.method: one.confusion.tolist() for one in found.methods},
         },
-        "left_out": {"unlabelled": found.unlabeled, "alone": found.alone},
+        "left_out": {"unlabeled": found.unlabeled, "alone": found.alone},
         "volumes": {
             "q": volumes.q,
             "eta": volumes.threshold,

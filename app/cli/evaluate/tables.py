@@ -2,8 +2,7 @@
 
 All tables of an evaluation stand in one file. Its first column, `table`, names the table of a row;
 the other columns are those of all tables, and a row has empty fields in columns of other tables. So
-one table is a filter in a spreadsheet, and `df[df.table == "figures"].dropna(axis=1, how="all")` in
-pandas.
+one table is a filter in a spreadsheet, and `kinedex.read_tables(FILE)["figures"]` in Python.
 """
 
 from __future__ import annotations

@@ -6,15 +6,20 @@
         for clip in client.clips.list(task="kick"):
             print(clip.name, clip.duration)
 
-The package needs only httpx2. NumPy is needed for arrays and pandas for `to_dataframe()`; both are
+`read_event` checks and reads what a service sends to a webhook. Evaluations run on the machine of
+the library: `read_tables` reads the file of `kinedex evaluate ... --csv FILE` as data frames.
+
+The package needs only httpx2. NumPy is needed for arrays and pandas for data frames; both are
 imported when they are first used.
 """
 
 from kinedex.client import AsyncKinedex, Kinedex
 from kinedex.errors import JobFailed, KinedexError, PackageNeeded, Place, Unreachable
+from kinedex.events import WrongSignature, read_event
 from kinedex.pages import AsyncPages, Pages
 from kinedex.records import Page, Record, as_json
 from kinedex.sent import UNSET, FileInput, Progress
+from kinedex.tables import read_tables
 
 __all__ = [
     "UNSET",
@@ -31,5 +36,8 @@ __all__ = [
     "Progress",
     "Record",
     "Unreachable",
+    "WrongSignature",
     "as_json",
+    "read_event",
+    "read_tables",
 ]

@@ -85,14 +85,14 @@ class Models(Group[SenderType]):
 
 
 class Labels(Group[SenderType]):
-    """Persons, tasks and words of the library."""
+    """Persons, tasks, words, metadata and folders of the library."""
 
     persons = ListMethod(calls_labels.list_persons)
     forget_person = CallMethod(calls_labels.forget_person)
     tasks = ListMethod(calls_labels.list_tasks)
     words = ListMethod(calls_labels.list_words)
-    list_metadata = ListMethod(calls_labels.list_metadata)
-    list_folders = ListMethod(calls_labels.list_folders)
+    metadata = ListMethod(calls_labels.list_metadata)
+    folders = ListMethod(calls_labels.list_folders)
     manifest = CallMethod(calls_labels.get_manifest)
 
 
@@ -123,14 +123,14 @@ class Service(Group[SenderType]):
 
 
 class Webhooks(Group[SenderType]):
-    """Calls about webhooks."""
+    """Webhooks: addresses that the service calls when a job ends."""
 
-    list_webhooks = CallMethod(calls_webhooks.list_webhooks)
-    create_webhook = CallMethod(calls_webhooks.create_webhook)
-    webhook = CallMethod(calls_webhooks.get_webhook)
-    update_webhook = CallMethod(calls_webhooks.update_webhook)
-    delete_webhook = CallMethod(calls_webhooks.delete_webhook)
-    test_webhook = CallMethod(calls_webhooks.test_webhook)
+    list = CallMethod(calls_webhooks.list_webhooks)
+    create = CallMethod(calls_webhooks.create_webhook)
+    get = CallMethod(calls_webhooks.get_webhook)
+    update = CallMethod(calls_webhooks.update_webhook)
+    delete = CallMethod(calls_webhooks.delete_webhook)
+    test = CallMethod(calls_webhooks.test_webhook)
 
 
 class RootBase(Group[SenderType]):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from kinedex.call import Call
 from kinedex.records import Page, as_json
@@ -46,6 +46,10 @@ class _Plan(Generic[Item]):
             )
 
 
+def _total(page: Any) -> int:
+    return int(page.total)
+
+
 class Pages(Generic[Item]):
     """A list of the service. Each iteration fetches it again, page by page."""
 
@@ -69,6 +73,10 @@ class Pages(Generic[Item]):
         """The first item, or None if the list is empty."""
         call = replace(self._call, query={**self._call.query, "limit": 1})
         return next(iter(self._send(call).items), None)
+
+    def total(self) -> int:
+        """The number of items on all pages, whatever the limit; above 100,000 an estimate."""
+        return _total(self._send(replace(self._call, query={**self._call.query, "limit": 1})))
 
     def to_dataframe(self) -> pd.DataFrame:
         """A table with one row for each item of all pages (needs pandas)."""
@@ -101,6 +109,11 @@ class AsyncPages(Generic[Item]):
         """The first item, or None if the list is empty."""
         call = replace(self._call, query={**self._call.query, "limit": 1})
         return next(iter((await self._send(call)).items), None)
+
+    async def total(self) -> int:
+        """The number of items on all pages, whatever the limit; above 100,000 an estimate."""
+        call = replace(self._call, query={**self._call.query, "limit": 1})
+        return _total(await self._send(call))
 
     async def to_dataframe(self) -> pd.DataFrame:
         """A table with one row for each item of all pages (needs pandas)."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 from kinedex.errors import PackageNeeded
@@ -38,13 +39,30 @@ def dataframe(documents: Iterable[Mapping[str, Any]]) -> pd.DataFrame:
 
     Times (columns that end with `_at`) become times in UTC.
     """
-    try:
-        import pandas as pd
-    except ImportError:
-        raise PackageNeeded("pandas", "A data frame") from None
+    pd = _pandas()
     columns, rows = table(documents)
     frame = pd.DataFrame(rows, columns=columns)
     for name in columns:
         if name.endswith("_at"):
             frame[name] = pd.to_datetime(frame[name], utc=True, format="ISO8601")
     return frame
+
+
+def read_tables(path: str | PathLike[str]) -> dict[str, pd.DataFrame]:
+    """The tables of an evaluation by name, from the file of `kinedex evaluate ... --csv FILE`.
+
+    A table has the columns in which any of its rows has a value. Raises PackageNeeded.
+    """
+    whole = _pandas().read_csv(path)
+    return {
+        str(name): rows.drop(columns="table").dropna(axis=1, how="all").convert_dtypes()
+        for name, rows in whole.groupby("table", sort=False)
+    }
+
+
+def _pandas() -> Any:
+    try:
+        import pandas as pd
+    except ImportError:
+        raise PackageNeeded("pandas", "A data frame") from None
+    return pd

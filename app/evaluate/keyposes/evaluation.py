@@ -108,6 +108,7 @@ def judge_keyposes(
     annotated = read_annotated(lib.store, filter)
     if not annotated:
         raise NotEnoughLabels(NO_ANNOTATIONS)
+    reported = None if grouping is None else grouping.groups([one.clip for one in annotated])
     groups = [clip.group for clip in annotated]
     examples = {method: _examples(annotated, method) for method in JUDGED_KEYPOSES}
     grids = {method: threshold_grid(some, tolerance) for method, some in examples.items()}
@@ -124,7 +125,7 @@ def judge_keyposes(
                 task=clip.clip.task,
                 true=len(clip.true),
                 counts={method: counts[method][index] for method in JUDGED_KEYPOSES},
-                group=None if grouping is None else grouping.group(clip.clip),
+                group=None if reported is None else reported[index],
             )
             for index, clip in enumerate(annotated)
         ),

@@ -108,5 +108,5 @@ def judged_clips(training: TrainingSet, grouping: Grouping | None = None) -> Jud
         unlabeled=len(training) - len(use),
         angles=np.stack(present) if present and len(present) == len(use) else None,
         wide=training.wide[use] if use else None,
-        reported=None if grouping is None else [grouping.group(training.clips[i]) for i in use],
+        reported=None if grouping is None else grouping.groups([training.clips[i] for i in use]),
     )

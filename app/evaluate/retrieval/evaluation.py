@@ -114,6 +114,7 @@ def judge_retrieval(
     labeled = read_labeled(lib, filter)
     chosen = labeled.chosen(classes, HIDDEN_CLASSES)
     queries = labeled.queries(max_queries)
+    groups = None if grouping is None else grouping.groups(queries)
     suns = [method for method in methods if method in SUN_METHODS]
     settings = _settings(threshold) if suns else []
     step = _stepper(
@@ -133,7 +134,6 @@ def judge_retrieval(
         for method in suns:
             name = f"{method.value} q={q}" + (f" eta={eta:g}" if eta else "")
             found[name] = list(judge(volumes.by(method)))
-    groups = None if grouping is None else list(map(grouping.group, queries))
     return _evaluation(labeled, chosen, k, found, groups)
 
 

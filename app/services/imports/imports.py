@@ -21,7 +21,7 @@ from app.services.imports.manifest_table import ManifestLimits
 from app.services.imports.options import ImportOptions
 from app.services.imports.plan import Plan
 from app.services.imports.register import ImportRun, Progress
-from app.services.imports.skeleton_pairs import pair_skeletons
+from app.services.imports.skeleton_pairs import skeleton_beside
 from app.services.imports.sources import (
     ArchiveLimits,
     SourceFile,
@@ -154,23 +154,14 @@ def _give_turn(run: ImportRun) -> None:
 @contextmanager
 def _sources(lib: Library, path: Path) -> Iterator[list[SourceFile]]:
     if path.is_dir():
-        yield folder_files(path)
+        yield folder_files(path, lib.settings.data_dir)
     elif is_archive(path):
         with archive_files(path, _limits(lib)) as files:
             yield files
     elif path.is_file():
-        yield single_file(path, _skeleton_beside(path))
+        yield single_file(path, skeleton_beside(path))
     else:
         raise NotFound(f"There is no file or folder {path}.")
-
-
-def _skeleton_beside(path: Path) -> Path | None:
-    """The ASF file in the folder of a single AMC file that is its skeleton."""
-    if path.suffix.lower() != ".amc":
-        return None
-    names = [other.name for other in path.parent.iterdir() if other.suffix.lower() == ".asf"]
-    name = pair_skeletons([path.name, *sorted(names)]).get(path.name)
-    return None if name is None else path.parent / name
 
 
 def _own_job(lib: Library, path: Path) -> ClaimedJob:

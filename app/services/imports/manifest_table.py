@@ -152,7 +152,7 @@ class _Counted(io.RawIOBase):
 
 def _unreadable(line: int, message: str) -> Unreadable:
     place = Place(f"{MANIFEST_NAME} line {line}", message)
-    return Unreadable(f"{MANIFEST_NAME} cannot be read: {message}.", places=[place])
+    return Unreadable(f"{MANIFEST_NAME} cannot be read: line {line}: {message}.", places=[place])
 
 
 def _too_large(line: int, message: str) -> TooLarge:

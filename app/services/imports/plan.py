@@ -80,7 +80,8 @@ class Plan:
         motions = [file.path for file in self.motions if is_called_motion(file.path)]
         matched = sum(map(self._manifest.is_matched, motions))
         if motions and not matched:
-            raise bad_field("labels", f"the pattern matches no file; a path is {motions[0]!r}")
+            example = f"a path is {motions[0]!r}; **/ stands for any folders"
+            raise bad_field("labels", f"the pattern matches no file; {example}")
         return len(motions) - matched
 
     def item(self, motion: SourceFile) -> Item:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Iterable
+from pathlib import Path
 from posixpath import splitext
 
 MAX_CUTS = 30
@@ -34,6 +35,15 @@ def pair_skeletons(paths: Iterable[str]) -> dict[str, str]:
     skeletons.sort()
     found = {motion: skeletons.of(motion) for motion in motions}
     return {motion: skeleton for motion, skeleton in found.items() if skeleton is not None}
+
+
+def skeleton_beside(path: Path) -> Path | None:
+    """The ASF file in the folder of a single AMC file that is its skeleton."""
+    if path.suffix.lower() != ".amc":
+        return None
+    names = [other.name for other in path.parent.iterdir() if other.suffix.lower() == ".asf"]
+    name = pair_skeletons([path.name, *sorted(names)]).get(path.name)
+    return None if name is None else path.parent / name
 
 
 class _Skeletons:

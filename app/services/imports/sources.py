@@ -13,7 +13,7 @@ import zipfile
 import zlib
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path, PurePosixPath
 from types import TracebackType
@@ -22,6 +22,8 @@ from typing import IO, BinaryIO
 from app.errors import BadContent, TooLarge, Unreadable
 from app.kinedex_error import KinedexError, Place
 from app.services.imports.archive_directory import open_zip
+from app.services.imports.folders import LEFT_OUT, content_of
+from app.services.imports.skipped import NoMotion
 
 _ENCRYPTED = 0x1
 _COMPRESSIONS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA)
@@ -107,14 +109,19 @@ def archive_files(archive: BinaryIO | Path, limits: ArchiveLimits) -> Iterator[l
         yield [_archive_file(opened, entry, limits) for entry in entries]
 
 
-def folder_files(folder: Path) -> list[SourceFile]:
-    """The files below a folder, sorted by path, without hidden files and links to folders."""
-    paths = []
-    for root, folders, names in os.walk(folder):
-        folders[:] = sorted(name for name in folders if not name.startswith("."))
-        base = Path(root)
-        paths += [base / name for name in sorted(names) if not name.startswith(".")]
-    return [_disk_file(path.relative_to(folder).as_posix(), path) for path in paths]
+def folder_files(folder: Path, own: Path | None = None) -> list[SourceFile]:
+    """The files below a folder, as in `content_of`; a library below it has a problem.
+
+    own: the data directory of the library that imports. Raises BadField if the folder is in a
+    library.
+    """
+    content = content_of(folder, own)
+    files = [_disk_file(path.relative_to(folder).as_posix(), path) for path in content.files]
+    libraries = [
+        replace(_disk_file(path.relative_to(folder).as_posix(), path), problem=NoMotion(LEFT_OUT))
+        for path in content.libraries
+    ]
+    return [*files, *libraries]
 
 
 def single_file(path: Path, companion: Path | None = None) -> list[SourceFile]:

@@ -11,6 +11,7 @@ from app.store.jobs import repository as jobs
 from app.store.jobs.record import OPEN_STATES, JobKind, JobRecord, JobState
 
 WHAT_TO_DO = "Fit the models: POST /v1/models/fit, or `kinedex fit`."
+AFTER_CHANGES = "If this has changed, fit the models again: POST /v1/models/fit, or `kinedex fit`."
 UPGRADING = (
     "This version of Kinedex analyzes all clips again, and then fits the models again. Both "
     "happen without a request: try again when they have ended."
@@ -41,7 +42,7 @@ def missing_model(tx: Tx, kind: str) -> ModelNotFitted:
             doing = "It is being fitted again without them"
         return ModelBeingFitted(f"{what}. {_try_again(doing, fit)}")
     if "reason" in outcome:
-        return ModelNotFitted(f"{what}. {outcome['reason']}")
+        return ModelNotFitted(f"{what}. At the last fit: {outcome['reason']} {AFTER_CHANGES}")
     if _is_upgrading(tx):
         return ModelBeingFitted(f"{what}. {UPGRADING}")
     return ModelNotFitted(f"{what}. {WHAT_TO_DO}")

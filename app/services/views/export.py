@@ -40,18 +40,11 @@ from app.services.views.export_format import (
     ExportUnit,
 )
 from app.services.views.export_options import ExportOptions, checked_options
+from app.services.views.exported import Export
 from app.services.views.frame_rates import requested_rate
 from app.services.views.low_dimensional import Reduction, as_motion, reduce
 from app.services.views.tables import table_of
 from app.store.clips.record import ClipRecord
-
-
-@dataclass(frozen=True, slots=True)
-class Export:
-    """A file: its name, and its content in pieces."""
-
-    file_name: str
-    blocks: Iterable[bytes]
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,28 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from pathlib import PurePath
+from dataclasses import replace
 from typing import Any
 
 from app.errors import ClipNotFound, ClipNotReady, NoGait, NotEnoughKeyposes
 from app.services.library.library import Library
-from app.services.views.export import Export, export
+from app.services.views.export import export
+from app.services.views.exported import ClipExport, FileNames
 from app.store.clips import listing
 from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipState
 
 LEFT_OUT = (ClipNotFound, ClipNotReady, NoGait, NotEnoughKeyposes)
 """Failures that concern one clip, and not the others."""
-
-
-@dataclass(frozen=True, slots=True)
-class ClipExport:
-    """The file of a clip, or the reason why there is none."""
-
-    clip_id: str
-    file: Export | None
-    reason: str | None = None
 
 
 def ready_ids(lib: Library, filter: ClipFilter) -> tuple[str, ...]:
@@ -38,21 +29,11 @@ def export_each(lib: Library, clip_ids: Sequence[str], **options: Any) -> Iterat
 
     options: those of `export`. Raises BadField.
     """
-    taken: set[str] = set()
+    names = FileNames()
     for clip_id in dict.fromkeys(clip_ids):
         try:
             file = export(lib, clip_id, **options)
         except LEFT_OUT as failure:
             yield ClipExport(clip_id, None, failure.detail)
             continue
-        name = _free_name(file.file_name, clip_id, taken)
-        taken.add(name.casefold())
-        yield ClipExport(clip_id, Export(name, file.blocks))
-
-
-def _free_name(name: str, clip_id: str, taken: set[str]) -> str:
-    """The name, with the id of the clip in it if another clip has it."""
-    if name.casefold() not in taken:
-        return name
-    path = PurePath(name)
-    return f"{path.stem}-{clip_id}{path.suffix}"
+        yield ClipExport(clip_id, replace(file, file_name=names.free(file.file_name, clip_id)))

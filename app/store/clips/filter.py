@@ -74,19 +74,30 @@ class ClipFilter:
         return self == ClipFilter()
 
 
-def condition(filter: ClipFilter) -> ColumnElement[bool]:
-    """The filter as a WHERE clause over `clips`."""
-    terms = [*_label_terms(filter), *_range_terms(filter)]
+def condition(filter: ClipFilter, clip_id: ColumnElement[str] = clips.c.id) -> ColumnElement[bool]:
+    """The filter as a WHERE clause over `clips`.
+
+    clip_id: `clips.c.id`, or an expression of the same value: the ids of `id_sets` contain it.
+    """
+    terms = [*_label_terms(filter), *_range_terms(filter), *map(clip_id.in_, id_sets(filter))]
     if filter.state:
         terms.append(clips.c.state.in_([state.value for state in filter.state]))
-    if filter.word:
-        terms.append(clips.c.id.in_(_carriers(filter.word)))
     if filter.not_word:
         terms.append(clips.c.id.not_in(_carriers(filter.not_word)))
     if filter.q:
         # autoescape: % and _ in `q` are plain characters, not wildcards.
         terms.append(clips.c.searched.contains(filter.q.casefold(), autoescape=True))
-    return and_(True, *terms, *_folder_terms(filter), *map(_metadata_term, filter.metadata))
+    refused = (_holders(one) for one in filter.metadata if one.is_negated)
+    return and_(True, *terms, *_folder_terms(filter), *map(clips.c.id.not_in, refused))
+
+
+def id_sets(filter: ClipFilter) -> list[Select[tuple[str]]]:
+    """The ids of the clips that meet one condition, for each condition on a table beside `clips`.
+
+    Conditions that refuse clips are left out.
+    """
+    accepted = [_holders(one) for one in filter.metadata if not one.is_negated]
+    return [*accepted, _carriers(filter.word)] if filter.word else accepted
 
 
 def is_in_folder(folder: str, parent: str) -> bool:
@@ -109,7 +120,8 @@ def in_folder(parent: str) -> ColumnElement[bool]:
     return or_(clips.c.folder == parent, begins)
 
 
-def _metadata_term(condition: MetadataCondition) -> ColumnElement[bool]:
+def _holders(condition: MetadataCondition) -> Select[tuple[str]]:
+    """Ids of the clips with a value that a condition describes, negated or not."""
     column = clip_metadata.c
     terms = [column.key == condition.key]
     if condition.texts:
@@ -118,8 +130,7 @@ def _metadata_term(condition: MetadataCondition) -> ColumnElement[bool]:
         terms.append(column.number >= condition.minimum)
     if condition.maximum is not None:
         terms.append(column.number <= condition.maximum)
-    having = select(column.clip_id).where(*terms)
-    return clips.c.id.not_in(having) if condition.is_negated else clips.c.id.in_(having)
+    return select(column.clip_id).where(*terms)
 
 
 def _label_terms(filter: ClipFilter) -> Iterator[ColumnElement[bool]]:

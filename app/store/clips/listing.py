@@ -10,7 +10,7 @@ from sqlalchemy import ColumnElement, Select, func, or_, select
 from app.errors import BadField
 from app.kinedex_error import Place
 from app.store.clips import repository as clip_repository
-from app.store.clips.filter import ClipFilter, condition
+from app.store.clips.filter import ClipFilter, condition, id_sets
 from app.store.clips.record import REANALYSIS_OPEN, ClipRecord, ClipState, Reanalysis
 from app.store.database.engine import Tx
 from app.store.database.paging import Page, Position, Value, after, read_cursor, write_cursor
@@ -18,6 +18,9 @@ from app.store.database.tables import clip_metadata, clips
 from app.store.database.totals import Total, total_of
 
 DEFAULT_SORT = "-created_at"
+FEW = 5000
+"""Clips that are sorted in less time than it takes to walk through all clips in the order of a list
+(100,000 clips, SQLite)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +51,8 @@ def list_clips(
 ) -> Page[ClipRecord]:
     """One page of at most `limit` clips; raises BadField at "sort" or "cursor"."""
     chosen, descending = _sort_of(sort)
-    query = select(clips, chosen.column.label("sorted_by")).where(condition(filter))
+    passes = condition(filter, _sought_id(tx, filter))
+    query = select(clips, chosen.column.label("sorted_by")).where(passes)
     if cursor is not None:
         position = read_cursor(cursor, sort, chosen.kind)
         query = query.where(after(chosen.column, clips.c.id, position, descending=descending))
@@ -137,6 +141,25 @@ _WAITS = or_(
     clips.c.state.in_((ClipState.QUEUED.value, ClipState.PROCESSING.value)),
     clips.c.reanalysis.in_(REANALYSIS_OPEN),
 )
+
+
+def _sought_id(tx: Tx, filter: ClipFilter) -> ColumnElement[str]:
+    """The id of a clip, as the conditions of one page of a list look for it.
+
+    SQLite begins with the ids that a condition finds, reads all of their clips, and sorts them. If
+    a third of 100,000 clips has a value, this takes 115 ms. So with many ids, the column is hidden
+    in an expression: then SQLite walks through the clips in their order until the page is full,
+    which takes 18 ms.
+    """
+    sets = id_sets(filter)
+    if sets and all(_is_large(tx, ids) for ids in sets):
+        return func.coalesce(clips.c.id, "")
+    return clips.c.id
+
+
+def _is_large(tx: Tx, ids: Select[tuple[str]]) -> bool:
+    counted = select(func.count()).select_from(ids.limit(FEW + 1).subquery())
+    return int(tx.execute(counted).scalar_one()) > FEW
 
 
 def _sort_of(sort: str) -> tuple[_Sort, bool]:

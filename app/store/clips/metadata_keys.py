@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from sqlalchemy import func, select
@@ -42,44 +42,39 @@ def page(tx: Tx, max_values: int, limit: int, cursor: str | None = None) -> Page
     Raises BadField at "cursor".
     """
     after = None if cursor is None else read_cursor(cursor, SORT, str).value
-    names = _names(tx, limit + 1, after)
-    shown = names[:limit]
-    keys = _counted(tx, shown)
-    for name in shown:
-        keys[name].values = _values(tx, name, max_values)
-    items = tuple(keys[name] for name in shown)
-    if len(names) <= limit:
-        return Page(items, None)
-    return Page(items, write_cursor(SORT, Position(shown[-1], "")))
+    keys = _counted(tx, limit + 1, after)
+    shown = keys[:limit]
+    for key in shown:
+        key.values = _values(tx, key.name, max_values)
+    if len(keys) <= limit:
+        return Page(tuple(shown), None)
+    return Page(tuple(shown), write_cursor(SORT, Position(shown[-1].name, "")))
 
 
-def _names(tx: Tx, limit: int, after: object) -> list[str]:
-    column = clip_metadata.c.key
-    query = select(column).distinct().order_by(column).limit(limit)
-    return list(tx.execute(query if after is None else query.where(column > after)).scalars())
+def _counted(tx: Tx, limit: int, after: object) -> list[MetadataKey]:
+    """The first keys after a name, without their values.
 
-
-def _counted(tx: Tx, names: Collection[str]) -> dict[str, MetadataKey]:
-    column = clip_metadata.c
+    One walk through an index that has all these columns: GROUP BY kind would sort all rows.
+    """
+    column, count = clip_metadata.c, func.count()
+    kinds = [count.filter(column.kind == kind.value) for kind in ValueKind]
     query = (
-        select(
-            column.key,
-            column.kind,
-            func.count(),
-            func.min(column.number),
-            func.max(column.number),
-        )
-        .where(column.key.in_(names))
-        .group_by(column.key, column.kind)
+        select(column.key, func.min(column.number), func.max(column.number), *kinds)
+        .group_by(column.key)
+        .order_by(column.key)
+        .limit(limit)
     )
-    keys = {name: MetadataKey(name) for name in names}
-    for name, kind, count, minimum, maximum in tx.execute(query):
-        key = keys[name]
-        key.count += count
-        key.kinds[ValueKind(kind)] = count
-        if kind == ValueKind.NUMBER:
-            key.minimum, key.maximum = tidy_number(minimum), tidy_number(maximum)
-    return keys
+    rows = tx.execute(query if after is None else query.where(column.key > after))
+    return [_key(name, lowest, highest, counts) for name, lowest, highest, *counts in rows]
+
+
+def _key(
+    name: str, lowest: float | None, highest: float | None, counts: Sequence[int]
+) -> MetadataKey:
+    kinds = {kind: count for kind, count in zip(ValueKind, counts, strict=True) if count}
+    minimum = None if lowest is None else tidy_number(lowest)
+    maximum = None if highest is None else tidy_number(highest)
+    return MetadataKey(name, sum(counts), kinds, minimum, maximum)
 
 
 def _values(tx: Tx, name: str, limit: int) -> tuple[ValueCount, ...]:

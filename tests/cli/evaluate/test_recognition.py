@@ -42,7 +42,7 @@ def test_json_and_csv_for_programs(kinedex: Kinedex, tmp_path: Path) -> None:
     assert result["clips"]["tasks"] == ["kick", "walk", "wave"]
     by_take = result["left_out"]["take"]
     assert list(by_take["methods"]) == ["mean-motion", "prior"]
-    task = by_take["methods"]["mean-motion"]["recognised"]["task"]
+    task = by_take["methods"]["mean-motion"]["recognized"]["task"]
     assert task["share"] == pytest.approx(task["right"] / task["of"])
     assert task["interval_95"][0] <= task["share"] <= task["interval_95"][1]
     by_task = result["left_out"]["task"]["methods"]["mean-motion"]["unknown"]["task"]

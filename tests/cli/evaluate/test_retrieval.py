@@ -40,7 +40,7 @@ def test_json_for_programs(kinedex: Kinedex) -> None:
         matrix = result["confusion"]["methods"][name]
         assert [sum(line) for line in matrix] == pytest.approx([1.0] * 3)
     assert result["volumes"]["converged"] == result["volumes"]["clips"] == 8
-    assert result["left_out"] == {"unlabelled": 0, "alone": 0}
+    assert result["left_out"] == {"unlabeled": 0, "alone": 0}
 
 
 def test_pictures_are_written_to_the_given_paths(kinedex: Kinedex, tmp_path: Path) -> None:

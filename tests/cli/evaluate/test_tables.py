@@ -12,6 +12,7 @@ import typer
 from app.cli.evaluate.confusion_table import print_confusion
 from app.cli.evaluate.tables import check_csv, keep_table, report, show_table
 from app.errors import BadField
+from kinedex import read_tables
 from tests.cli.conftest import Kinedex
 from tests.formats.csv.files import rows_of
 
@@ -37,6 +38,15 @@ def test_all_tables_stand_in_one_file_and_rows_are_whole(
     shown = capsys.readouterr().out
     assert "For people" in shown
     assert "\nb" not in shown
+
+
+def test_the_file_becomes_data_frames(tmp_path: Path) -> None:
+    pytest.importorskip("pandas")
+    report(dict, print_some, as_json=False, csv_file=tmp_path / "tables.csv")
+    scores, counts = read_tables(tmp_path / "tables.csv").values()
+    assert list(scores.columns) == ["name", "score"]
+    assert scores["score"].isna().tolist() == [False, True]
+    assert counts.to_dict("records") == [{"name": "c", "count": 3}]
 
 
 def test_json_and_csv_go_together(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

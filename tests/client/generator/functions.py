@@ -78,7 +78,9 @@ class Functions:
         """The arguments of `Call` for the query, the body and the files."""
         found = []
         if query := [p for p in one.parameters if p.place == "query"]:
-            found.append(f"query={_given(query)}")
+            has_filter = any(p.place == "filter" for p in one.parameters)
+            more = " | given(**(filter or {}))" if has_filter else ""
+            found.append(f"query={_given(query)}{more}")
         fields = [p for p in one.parameters if p.place in {"json", "form", "both"}]
         collect = "corrections" if one.method == "PATCH" else "given"
         if "json" in one.body:
@@ -105,10 +107,8 @@ class Functions:
 
     def _argument(self, one: Operation, parameter: Parameter) -> str:
         kind = "FileInput" if parameter.place == "file" else self._sent.of(parameter.schema)
-        if parameter.place == "form" and parameter.schema.get("description", "").startswith(
-            "Separated by spaces"
-        ):
-            kind = "str | Sequence[str] | None"
+        if parameter.place in {"form", "both"}:
+            kind = _of_text(parameter.description) or kind
         if parameter.is_required:
             return f"{parameter.name}: {kind}"
         if one.method == "PATCH":
@@ -132,6 +132,13 @@ class Functions:
         if self.item_of(one) is not None:
             text = _LISTED.get(parameter.name, text)
         return f"{parameter.name}: {text.strip()}" if text.strip() else ""
+
+
+def _of_text(description: str) -> str | None:
+    """The type of a field of a form whose text is a list or JSON; None for another field."""
+    if description.startswith("Separated by spaces"):
+        return "str | Sequence[str] | None"
+    return "str | Mapping[str, Any] | None" if description.startswith("JSON:") else None
 
 
 def _default(schema: Schema) -> str:

@@ -28,6 +28,14 @@ METHODS = {
     "list_persons": "labels.persons",
     "list_tasks": "labels.tasks",
     "list_words": "labels.words",
+    "list_metadata": "labels.metadata",
+    "list_folders": "labels.folders",
+    "list_webhooks": "webhooks.list",
+    "create_webhook": "webhooks.create",
+    "get_webhook": "webhooks.get",
+    "update_webhook": "webhooks.update",
+    "delete_webhook": "webhooks.delete",
+    "test_webhook": "webhooks.test",
     "livez": "service.alive",
     "readyz": "service.ready",
     "get_status": "service.status",
@@ -37,9 +45,10 @@ GROUPS = {
     "jobs": "Jobs: work in the background.",
     "search": "Searches by example, by pose and by words.",
     "models": "Models that are fitted on the library.",
-    "labels": "Persons, tasks and words of the library.",
+    "labels": "Persons, tasks, words, metadata and folders of the library.",
     "studies": "Blind studies that compare low-dimensional motions.",
     "service": "The service itself.",
+    "webhooks": "Webhooks: addresses that the service calls when a job ends.",
 }
 SUBJECTS = re.compile(r"^get_(?:clip_|job_)?")
 WHOLE = {"get_clip": "clips.get", "get_job": "jobs.get"}

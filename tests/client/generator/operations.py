@@ -7,16 +7,23 @@ from dataclasses import dataclass
 from typing import Any
 
 from tests.client.generator.names import MethodName, method_name
-from tests.client.generator.schemas import Schema, name_of
+from tests.client.generator.schemas import PREFIX, Schema, name_of
 
 JSON, FORM = "application/json", "multipart/form-data"
 OCTETS, EVENTS = "application/octet-stream", "text/event-stream"
 VERBS = ("get", "post", "put", "patch", "delete")
+FILTERS = (
+    'Filters by name, as in a search, for those that are no arguments: {"meta.condition": "tired", '
+    '"meta.age.min": 30}.'
+)
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of a method. place: path, query, json, form, both, or file."""
+    """A parameter of a method.
+
+    place: path, query, json, form, both, file, or filter: more parameters of the query, by name.
+    """
 
     name: str
     schema: Schema
@@ -91,7 +98,17 @@ def _parameters(one: Schema, schemas: Mapping[str, Schema]) -> Iterator[Paramete
         if found["in"] in {"path", "query"}:
             schema = {"description": found.get("description", ""), **found["schema"]}
             yield Parameter(found["name"], schema, found.get("required", False), found["in"])
+    yield from _filters(one, schemas)
     yield from _body_parameters(one.get("requestBody", {}).get("content", {}), schemas)
+
+
+def _filters(one: Schema, schemas: Mapping[str, Schema]) -> Iterator[Parameter]:
+    """A parameter for the filters whose names no description can list, as `meta.KEY`."""
+    known = {found["name"] for found in one.get("parameters", []) if found["in"] == "query"}
+    for name, schema in schemas.items():
+        if "patternProperties" in schema and schema["properties"].keys() <= known:
+            reference = {"$ref": f"{PREFIX}{name}", "description": FILTERS}
+            yield Parameter("filter", reference, is_required=False, place="filter")
 
 
 def _body_parameters(

@@ -11,7 +11,7 @@ Schema = Mapping[str, Any]
 _SHAPE = re.compile(r"\([\w ]+,[\w ,]*\)")
 """Descriptions of arrays name their shape, as in "(frames, joints, 3), meters"."""
 _PLAIN = {"string": "str", "integer": "int", "number": "float", "boolean": "bool", "null": "None"}
-_PREFIX = "#/components/schemas/"
+PREFIX = "#/components/schemas/"
 
 
 class Types:
@@ -28,7 +28,7 @@ class Types:
     def of(self, schema: Schema) -> str:
         """The type of a value."""
         if "$ref" in schema:
-            return name_of(schema["$ref"])
+            return self._component(name_of(schema["$ref"]))
         if "const" in schema:
             return f"Literal[{schema['const']!r}]".replace("'", '"')
         if "enum" in schema:
@@ -39,6 +39,11 @@ class Types:
         if len(schema.get("allOf", ())) == 1:
             return self.of(schema["allOf"][0])
         return self._of_kind(schema)
+
+    def _component(self, name: str) -> str:
+        # a TypedDict has no members whose names are not known
+        is_open = self.sent and "patternProperties" in self.schemas.get(name, {})
+        return f"{name} | Mapping[str, Any]" if is_open else name
 
     def _union(self, members: list[Schema]) -> str:
         kinds = dict.fromkeys(self.of(member) for member in members)
@@ -95,7 +100,7 @@ def _innermost(schema: Schema) -> Any:
 
 def name_of(reference: str) -> str:
     """The name of a component that a reference points to."""
-    return reference.removeprefix(_PREFIX)
+    return reference.removeprefix(PREFIX)
 
 
 def references(schema: Any) -> Iterator[str]:

@@ -38,7 +38,7 @@ def test_cycles_are_shifted_to_the_same_start() -> None:
         assert np.abs(of_step.poses - of_step.poses[0]).max() < 0.2
 
 
-def test_other_rhythms_and_unlabelled_clips_are_left_out() -> None:
+def test_other_rhythms_and_unlabeled_clips_are_left_out() -> None:
     clips = [DancedCycles(_steps("abab"), 2)] * 2 + [DancedCycles(_steps("abc"), 3)] * 2
     danced = arrange(clips, ["ada", "bo", "cy", None], ["salsa", "salsa", "salsa", "salsa"])
     assert set(danced.persons) == {"ada", "bo"}

@@ -32,7 +32,7 @@ def test_copies_of_a_recording_are_in_one_fold() -> None:
     assert all(one.top_3_recognition == 0.0 for one in figures if one.method == "default")
 
 
-def test_unlabelled_clips_do_not_count_and_large_libraries_are_sampled(
+def test_unlabeled_clips_do_not_count_and_large_libraries_are_sampled(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     symbols, statistics, words = word_clips(4)

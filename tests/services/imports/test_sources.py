@@ -10,8 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from app.errors import TooLarge, Unreadable
+from app.errors import BadField, TooLarge, Unreadable
 from app.services.imports.archive_directory import HEADER_BYTES
+from app.services.imports.skipped import NoMotion
 from app.services.imports.sources import (
     ArchiveLimits,
     SourceFile,
@@ -140,6 +141,19 @@ def test_folders_and_single_files_are_sources(tmp_path: Path) -> None:
     assert not is_archive(tmp_path / "a.bvh")
     (tmp_path / "z.zip").write_bytes(zip_archive({"a": b""}).getvalue())
     assert is_archive(tmp_path / "z.zip")
+
+
+def test_libraries_below_a_folder_are_left_out(tmp_path: Path) -> None:
+    for name in ("a.bvh", "data/kinedex.sqlite3", "data/files/ab/x", "own/files/cd/y"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_bytes(b"1")
+    motion, *libraries = folder_files(tmp_path, tmp_path / "own")
+    assert (motion.path, motion.problem) == ("a.bvh", None)
+    assert [library.path for library in libraries] == ["data", "own"]
+    assert all(isinstance(library.problem, NoMotion) for library in libraries)
+    for inside in ("data", "own", "own/files"):
+        with pytest.raises(BadField, match="folder of a library"):
+            folder_files(tmp_path / inside, tmp_path / "own")
 
 
 @pytest.mark.parametrize("name", ["deflated", "bzip2", "lzma", "stored"])

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from kinedex.call import Call, nothing, path_of, read_bytes, record
 from kinedex.sent import UNSET, FileInput, Progress, Unset, corrections, given
 
 if TYPE_CHECKING:
+    from kinedex.types.bodies import Filter
     from kinedex.types.choices import ClipState
     from kinedex.types.clips import Clip, ClipCreated, ClipList
 
@@ -47,6 +48,7 @@ def list_clips(
     limit: int | None = None,
     cursor: str | None = None,
     fields: Sequence[str] | None = None,
+    filter: Filter | Mapping[str, Any] | None = None,
 ) -> Call[ClipList]:
     """List the clips that pass every filter. Repeat a label parameter to accept several values.
 
@@ -67,6 +69,8 @@ def list_clips(
     sort: A minus sign at the start reverses the order. Default: -created_at.
     limit: Maximum number of items in all; None lists all.
     cursor: Where the list starts: `next` of an earlier page.
+    filter: Filters by name, as in a search, for those that are no arguments: {"meta.condition":
+        "tired", "meta.age.min": 30}.
     """
     from kinedex.types.clips import ClipList
 
@@ -96,7 +100,8 @@ def list_clips(
             limit=limit,
             cursor=cursor,
             fields=fields,
-        ),
+        )
+        | given(**(filter or {})),
     )
 
 
@@ -111,13 +116,13 @@ def create_clip(
     words: str | Sequence[str] | None = None,
     license: str | None = None,
     source: str | None = None,
-    metadata: str | None = None,
+    metadata: str | Mapping[str, Any] | None = None,
     path: str | None = None,
     on_conflict: Literal["keep", "update", "error"] | None = None,
     frame_rate: float | None = None,
     unit: str | None = None,
     up_axis: Literal["x", "y", "z", "-x", "-y", "-z"] | None = None,
-    roles: str | None = None,
+    roles: str | Mapping[str, Any] | None = None,
     stack: str | None = None,
     audio_offset: float | None = None,
     tempo: float | None = None,

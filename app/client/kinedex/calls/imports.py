@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 from kinedex.call import Call, record
 from kinedex.sent import FileInput, Progress, given
@@ -19,7 +20,7 @@ def start_import(
     words: str | None = None,
     license: str | None = None,
     source: str | None = None,
-    metadata: str | None = None,
+    metadata: str | Mapping[str, Any] | None = None,
     labels: str | None = None,
     overwrite: bool | None = None,
     progress: Progress | None = None,

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from kinedex.call import Call, nothing, path_of, read_bytes, record
 from kinedex.sent import given
 
 if TYPE_CHECKING:
+    from kinedex.types.bodies import Filter
     from kinedex.types.labels import FolderList, MetadataKeys, NamedCounts
 
 
@@ -133,6 +134,7 @@ def get_manifest(
     not_folder: str | Sequence[str] | None = None,
     min_duration: float | None = None,
     max_duration: float | None = None,
+    filter: Filter | Mapping[str, Any] | None = None,
 ) -> Call[bytes]:
     """The labels, hints and metadata of clips, as a manifest that an import reads again.
 
@@ -145,6 +147,8 @@ def get_manifest(
     not_folder: Clips of none of these folders.
     min_duration: Seconds.
     max_duration: Seconds.
+    filter: Filters by name, as in a search, for those that are no arguments: {"meta.condition":
+        "tired", "meta.age.min": 30}.
     """
     return Call(
         "get_manifest",
@@ -166,6 +170,7 @@ def get_manifest(
             not_folder=not_folder,
             min_duration=min_duration,
             max_duration=max_duration,
-        ),
+        )
+        | given(**(filter or {})),
         accept="*/*",
     )

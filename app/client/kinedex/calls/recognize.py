@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Literal
 
 from kinedex.call import Call, record
 from kinedex.sent import FileInput, Progress, given
@@ -19,7 +20,7 @@ def recognize(
     unit: str | None = None,
     frame_rate: float | None = None,
     up_axis: Literal["x", "y", "z", "-x", "-y", "-z"] | None = None,
-    roles: str | None = None,
+    roles: str | Mapping[str, Any] | None = None,
     stack: str | None = None,
     method: Literal["default", "multilinear", "signatures", "perera"] | None = None,
     known_person: str | None = None,

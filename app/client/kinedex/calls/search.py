@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal
 
 from kinedex.call import Call, record
 from kinedex.sent import FileInput, Progress, given
@@ -23,7 +23,7 @@ def search_motion(
     unit: str | None = None,
     frame_rate: float | None = None,
     up_axis: Literal["x", "y", "z", "-x", "-y", "-z"] | None = None,
-    roles: str | None = None,
+    roles: str | Mapping[str, Any] | None = None,
     stack: str | None = None,
     start: float | None = None,
     end: float | None = None,
@@ -31,7 +31,7 @@ def search_motion(
     limit: int | None = None,
     scope: Literal["clips", "windows", "segments"] | None = None,
     include_self: bool | None = None,
-    filter: Filter | None = None,
+    filter: Filter | Mapping[str, Any] | None = None,
     cursor: str | None = None,
     segment: int | None = None,
     progress: Progress | None = None,
@@ -120,7 +120,7 @@ def search_words(
     fields: Sequence[str] | None = None,
     mode: Literal["default", "cca"] | None = None,
     limit: int | None = None,
-    filter: Filter | None = None,
+    filter: Filter | Mapping[str, Any] | None = None,
     cursor: str | None = None,
 ) -> Call[WordHits]:
     """Find motions for words, phrases or sentences. The most probable motion comes first.

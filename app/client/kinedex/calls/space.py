@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal
 
 from kinedex.call import Call, record
 from kinedex.sent import given
 
 if TYPE_CHECKING:
+    from kinedex.types.bodies import Filter
     from kinedex.types.space import SpaceMap
 
 
@@ -31,6 +32,7 @@ def get_space(
     space: Literal["symbols", "vectors"] | None = None,
     dimensions: Literal["2", "3"] | None = None,
     limit: int | None = None,
+    filter: Filter | Mapping[str, Any] | None = None,
 ) -> Call[SpaceMap]:
     """Every ready clip as a point in two or three dimensions. Similar clips are close together.
 
@@ -47,6 +49,8 @@ def get_space(
         symbols.
     dimensions: Default: 2.
     limit: Maximum number of points. Of more clips, an even selection is shown. Default: 10000.
+    filter: Filters by name, as in a search, for those that are no arguments: {"meta.condition":
+        "tired", "meta.age.min": 30}.
     """
     from kinedex.types.space import SpaceMap
 
@@ -73,5 +77,6 @@ def get_space(
             space=space,
             dimensions=dimensions,
             limit=limit,
-        ),
+        )
+        | given(**(filter or {})),
     )
