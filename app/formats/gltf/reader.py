@@ -73,6 +73,7 @@ def read_gltf(content: bytes, stack: str | None = None) -> Recording:
         up_axis="y",
         metres_per_unit=1.0,
         cautions=body.cautions + stack_caution(names, lengths, chosen),
+        start_frame=float(seconds[0]) * rate,
     )
 
 

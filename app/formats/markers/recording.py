@@ -74,9 +74,10 @@ def recording_of_markers(tracks: Tracks, format: str) -> Recording:
         frame_rate=tracks.frame_rate,
         up_axis=tracks.up_axis,
         metres_per_unit=tracks.metres_per_unit,
+        start_frame=markers.skipped + stretch.start,
         cautions=tracks.cautions
         + markers.cautions
-        + stretch_caution(markers, stretch, rate)
+        + stretch_caution(markers, stretch)
         + gap_cautions(markers, filled.frames, np.flatnonzero(~good).tolist()),
     )
 

@@ -78,13 +78,13 @@ def _part(label: str) -> int:
 
 
 def _size(positions: FloatArray) -> float:
-    """The diagonal of the body: of the box around the median positions of its markers."""
+    """The diagonal of the body: of the box around the mean positions of its markers."""
     some = positions[:: max(1, len(positions) // MAX_COMPARED_FRAMES)]
     # Relative to the middle of all markers, so that the way through the room does not count.
     with np.errstate(invalid="ignore"), warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # markers that are not seen in any frame
-        middle = np.nanmedian(some, axis=1, keepdims=True)
-        usual = np.nanmedian(some - middle, axis=0)
+        middle = np.nanmean(some, axis=1, keepdims=True)
+        usual = np.nanmean(some - middle, axis=0)
     usual = usual[np.isfinite(usual).all(axis=-1)]
     return float(np.linalg.norm(np.ptp(usual, axis=0))) if len(usual) else 0.0
 

@@ -33,12 +33,13 @@ class Markers:
 
     labels: (markers,) without the name of the subject. positions: (frames, markers, 3) in the unit
     and axes of the file, NaN where a marker is not seen. first_frame: the number that the file
-    gives to the first frame.
+    gives to the first of these frames. skipped: the frames of the file before it.
     """
 
     labels: tuple[str, ...]
     positions: FloatArray
     first_frame: int
+    skipped: int = 0
     cautions: tuple[Caution, ...] = ()
 
 
@@ -68,14 +69,12 @@ def labeled_markers(points: Tracks) -> Markers:
     if last - first < len(seen):
         start, end = points.first_frame + first, points.first_frame + last - 1
         detail = f"no marker is seen before frame {start} or after frame {end}"
-        if points.frame_rate:
-            seconds = first / points.frame_rate
-            detail += f"; 0 s here is {seconds:.3f} s after the first frame of the file"
         more_cautions += (Caution("frames_trimmed", detail),)
     return Markers(
         tuple(split[index][1] for index in points_read),
         points.positions[first:last, points_read],
         points.first_frame + first,
+        first,
         cautions + more_cautions,
     )
 
@@ -174,16 +173,15 @@ def gap_cautions(markers: Markers, filled: int, hidden: Sequence[int]) -> tuple[
     return cautions
 
 
-def stretch_caution(markers: Markers, stretch: slice, frame_rate: float) -> tuple[Caution, ...]:
-    """A caution if only a part of the frames is read. frame_rate: Hz."""
+def stretch_caution(markers: Markers, stretch: slice) -> tuple[Caution, ...]:
+    """A caution if only a part of the frames is read."""
     count = len(markers.positions)
     if stretch.stop - stretch.start == count:
         return ()
     first, last = markers.first_frame + stretch.start, markers.first_frame + stretch.stop - 1
     detail = (
-        f"markers that are needed are hidden for long times, so only frames {first} to {last} of"
-        f" {count} are read; 0 s here is {stretch.start / frame_rate:.3f} s after frame"
-        f" {markers.first_frame}"
+        f"markers that are needed are hidden for long times, so only frames {first} to {last} are"
+        f" read, which are {last - first + 1} of {count} frames"
     )
     return (Caution("frames_trimmed", detail),)
 

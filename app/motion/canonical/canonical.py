@@ -70,6 +70,7 @@ def canonicalize(
         declared_frame_rate=recording.frame_rate,
         metres_per_unit=unit.metres_per_unit,
         cautions=recording.cautions + others + made + axis_cautions + unit.cautions,
+        start_offset=recording.start_frame / rate,
     )
     if not given and all(role in found for role in ESSENTIAL_ROLES):
         refuse_animals(motion, _rest(recording))

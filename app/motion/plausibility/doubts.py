@@ -115,9 +115,12 @@ def _frozen_markers(motion: Motion) -> Iterator[Caution]:
         return
     hips = motion.positions[:, motion.roles[_R.HIPS]]
     above = set(motion.parents.tolist())
-    for joint in np.flatnonzero(motion.parents < 0).tolist():
-        if joint in above:
-            continue
+    roots = np.flatnonzero(motion.parents < 0).tolist()
+    single = np.array([joint for joint in roots if joint not in above], dtype=np.int64)
+    # Few markers have many steps without a change of x, so only these are looked at closely.
+    x = motion.positions[:, single, 0]
+    unchanged = np.count_nonzero(x[1:] == x[:-1], axis=0)
+    for joint in single[unchanged >= least - 1].tolist():
         path = motion.positions[:, joint]
         still = np.all(path[1:] == path[:-1], axis=1)
         if still.all():

@@ -62,6 +62,16 @@ def test_files_of_the_writer_are_read_back(name: str) -> None:
     assert np.abs(recording.positions - animation.positions()).max() < 1e-5
 
 
+@pytest.mark.parametrize("late", [0.0, 2.5])
+def test_the_time_of_the_first_key_is_kept(late: float) -> None:
+    document = Document([dict(node) for node in CHAIN])
+    times, values = TIMES + np.float32(late), turns().astype("<f4")
+    document.animate([(0, "rotation", document.array(times), document.array(values))])
+    recording = read_gltf(document.glb())
+    assert recording.start_frame == pytest.approx(late * 24)
+    assert len(recording.positions) == FRAMES
+
+
 def test_a_person_keeps_roles_and_rotations() -> None:
     animation = a_person()
     recording = read_recording(write_glb(animation))
