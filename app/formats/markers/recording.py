@@ -61,7 +61,7 @@ def recording_of_markers(tracks: Tracks, format: str) -> Recording:
     filled = _filled(markers, rate)
     stretch = readable_stretch(markers, filled.positions, rate)
     positions = filled.positions[stretch]
-    good = np.isfinite(positions).all(axis=(0, 2))
+    good = np.isfinite(positions[..., 0]).all(axis=0)
     usable = {marker: positions[:, marker] for marker in np.flatnonzero(good).tolist()}
     centers = centers_of(markers, usable)
     skeleton, positions = _skeleton(markers.labels, usable, centers)

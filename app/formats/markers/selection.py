@@ -84,11 +84,12 @@ def _without_sentinels(positions: FloatArray) -> FloatArray:
 
     Programs write such numbers for markers that were not seen. No marker is there by chance.
     """
-    x = positions[..., 0]
-    with np.errstate(invalid="ignore"):
-        same = (x == positions[..., 1]) & (x == positions[..., 2]) & (np.abs(x) >= MIN_SENTINEL)
+    x, y, z = np.moveaxis(positions, -1, 0)
+    same = x == y
     if not same.any():
         return positions
+    with np.errstate(invalid="ignore"):
+        same &= (x == z) & (np.abs(x) >= MIN_SENTINEL)
     seen = positions.copy()
     seen[same] = np.nan
     return seen

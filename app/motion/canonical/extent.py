@@ -52,7 +52,8 @@ def check_extent(motion: Motion) -> tuple[Caution, ...]:
     size = _size(motion)
     own = sorted(set(motion.roles.values()))
     max_distance, max_reach = MAX_DISTANCE.in_meters(size), MAX_REACH.in_meters(size)
-    far = _first_beyond(motion.positions, max_distance, own)
+    is_far = max(motion.positions.max(), -motion.positions.min()) > max_distance
+    far = _first_beyond(motion.positions, max_distance, own) if is_far else None
     if far is not None:
         raise _refused(motion, far, max_distance, "from the origin")
     hips = motion.positions[:, motion.roles[JointRole.HIPS]]
@@ -65,7 +66,7 @@ def check_extent(motion: Motion) -> tuple[Caution, ...]:
         if reached is not None:
             excess = _Excess(start + reached.frame, own[reached.joint], reached.meters)
             raise _refused(motion, excess, max_reach, "from the hips")
-    return _other_joints_caution(max_distance, motion)
+    return _other_joints_caution(max_distance, motion) if is_far else ()
 
 
 def _size(motion: Motion) -> float:

@@ -21,6 +21,7 @@ import numpy as np
 
 from app.motion.roles.joint_roles import JointRole
 from app.motion.skeleton.recording import Caution
+from app.motion.skeleton.resampling import some_frames
 from app.numerics.arrays import BoolArray, FloatArray
 
 MIN_HEIGHT_RATIO = 2.0
@@ -72,8 +73,7 @@ def judge_up_axis(
     usual in the format. The caution is also given if the body seems to lie in all frames, and could
     stand along another axis.
     """
-    frames = np.unique(np.linspace(0, len(positions) - 1, MAX_SAMPLED_FRAMES).astype(int))
-    body = _Body(positions[frames], roles)
+    body = _Body(some_frames(positions, MAX_SAMPLED_FRAMES), roles)
     standing = body.standing_axis()
     if standing is None or standing == usual or not body.stands_along(standing, usual):
         return usual, ()

@@ -25,30 +25,33 @@ _SIDED: dict[str, tuple[str, ...]] = {
     "KNE": (
         "?KNE", "?KNEE", "?KNEELAT", "?KNEELATERAL", "?LATKNEE", "?KNEEOUT", "?FLE", "?LEK",
         "?LEPI", "?LFC", "?KNEL", "?LE", "?LKNE", "?KNELAT", "?LKNEE", "?KNEELATEPICONDYLE",
-        "?LATFEMEPI",
+        "?LATFEMEPI", "?KL", "?KNEE1",
     ),
     "KNM": (
         "?KNM", "?MKNE", "?KNEM", "?KNI", "?KNEEMED", "?KNEEMEDIAL", "?MEDKNEE", "?KNEEIN", "?FME",
         "?MEK", "?MEPI", "?MFC", "?ME", "?MKNEE", "?KNEMED", "?KNEEMEDEPICONDYLE", "?MEDFEMEPI",
+        "?KM",
     ),
     "AJC": ("?AJC",),
     "ANK": (
         "?ANK", "?ANKLE", "?ANKLELAT", "?ANKLELATERAL", "?LATANKLE", "?ANKLEOUT", "?FAL", "?LMAL",
-        "?ANKL", "?LM", "?LATMALLEOLUS", "?LMALL", "?LANK", "?LANKLE",
+        "?ANKL", "?LM", "?LATMALLEOLUS", "?LMALL", "?LANK", "?LANKLE", "?AL", "?MALL", "?MALLEOLUS",
     ),
     "ANM": (
         "?ANM", "?MANK", "?ANKM", "?MED", "?ANKLEMED", "?ANKLEMEDIAL", "?MEDANKLE", "?ANKLEIN",
-        "?TAM", "?MMAL", "?MM", "?MEDMALLEOLUS", "?MMALL", "?MANKLE",
+        "?TAM", "?MMAL", "?MM", "?MEDMALLEOLUS", "?MMALL", "?MANKLE", "?AM",
     ),
     "TOE": (
         "?TOE", "?TOES", "?TOETIP", "?MT2", "?SMH", "?SM", "?FOREFOOT2", "?2MH", "?MTH2", "?TOE2",
     ),
     "MT1": ("?MT1", "?FMH", "?TOEIN", "?FM", "?FOREFOOTIN", "?1MH", "?MTH1"),
-    "MT5": ("?MT5", "?VMH", "?TOEOUT", "?VM", "?FOREFOOTOUT", "?5META", "?5MH", "?MTH5"),
+    "MT5": (
+        "?MT5", "?VMH", "?TOEOUT", "?VM", "?FOREFOOTOUT", "?5META", "?5MH", "?MTH5", "?MET", "?FL",
+    ),
     "SJC": ("?SJC",),
     "SHO": (
         "?SHO", "?SHOULDER", "?ACR", "?ACROMION", "?SAE", "?SHOULDERTOP", "?SHOTOP", "?SHLD", "?SH",
-        "?AC", "?ACROMIO",
+        "?AC", "?ACROMIO", "?ACROMIUM", "?SHOULD",
     ),
     "EJC": ("?EJC",),
     "ELB": (

@@ -45,7 +45,8 @@ def fill_gaps(positions: FloatArray, frame_rate: float) -> Filled:
     frame_rate: Hz. The input is not changed.
     """
     longest = max(1, round(MAX_GAP * frame_rate))
-    unseen: BoolArray = np.asarray(np.isnan(positions).any(axis=-1))
+    x, y, z = np.moveaxis(positions, -1, 0)
+    unseen: BoolArray = np.asarray(np.isnan(x + y + z))
     filled = positions.copy()
     long_gaps: list[Gap] = []
     count = 0
