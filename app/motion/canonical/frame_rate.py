@@ -238,8 +238,10 @@ def _steps_alone(positions: FloatArray, rate: float) -> Iterator[_Finding]:
 
 def _steps(positions: FloatArray, rate: float) -> Iterator[_Finding]:
     """positions: (frames, 13, 3) in meters. A step ends when the other foot passes the first."""
-    leg = _leg_length(positions)
-    stride = _fore_aft(*_low_pass(_side_lines(positions), rate, STEP_CUTOFF).swapaxes(0, 1))
+    leg, lines = _leg_length(positions), _side_lines(positions)
+    if float(np.abs(lines[:, 1, ::2]).max()) < MIN_STEP_LENGTH * leg / 2:
+        return  # the feet are never far enough apart, so the filter is not needed
+    stride = _fore_aft(*_low_pass(lines, rate, STEP_CUTOFF).swapaxes(0, 1))
     crossings = np.flatnonzero(np.diff(np.sign(stride)))
     steps = [(b - a, float(np.abs(stride[a : b + 1]).max())) for a, b in pairwise(crossings)]
     times = [frames for frames, length in steps if length > MIN_STEP_LENGTH * leg]

@@ -183,6 +183,18 @@ def test_joints_hidden_for_a_long_time_are_named() -> None:
         read_recording(npy(np.full_like(positions, np.nan)))
 
 
+@pytest.mark.parametrize(("first", "last"), [(0, 20), (20, 40)])
+def test_the_longest_stretch_without_hidden_joints_is_read(first: int, last: int) -> None:
+    positions = PERSON.positions.copy()
+    positions[first:last, 3] = np.nan
+    recording = read_recording(npz(**ARRAYS | {"positions": positions}))
+    start = last if first == 0 else 0
+    assert [c.code for c in recording.cautions] == ["frames_trimmed"]
+    assert f"frames {start} to {start + 19}" in recording.cautions[0].detail
+    assert recording.start_frame == start
+    assert np.array_equal(recording.positions, PERSON.positions[start : start + 20])
+
+
 @pytest.mark.parametrize("key", ["arr_0", "posed_joints", "points"])
 def test_other_names_of_positions(key: str) -> None:
     recording = read_recording(npz(**{key: PERSON.positions}))

@@ -20,6 +20,8 @@ from app.motion.roles.marker_names import (
         ("V.Sacral", "SACR"), ("RTAM", "RANM"), ("WaistLFront", "LASI"), ("WaistRBack", "RPSI"),
         ("LKneeOut", "LKNE"), ("RShoulderTop", "RSHO"), ("C7", "C7"), ("CV7", "C7"),
         ("Top.Head", "TOPHD"), ("LFHD", "LFHD"), ("RIEL", "RELM"), ("LHJC", "LHJC"),
+        ("r mall", "RANK"), ("l met", "LMT5"), ("r should", "RSHO"), ("l knee 1", "LKNE"),
+        ("RKM", "RKNM"), ("LAL", "LANK"), ("RAM", "RANM"), ("L.Acromium", "LSHO"),
         ("LTHI", None), ("", None), ("L", None), ("LEFT", None), ("\N{KELVIN SIGN}", None),
     ],
 )  # fmt: skip
