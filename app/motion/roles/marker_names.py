@@ -21,11 +21,12 @@ _SIDED: dict[str, tuple[str, ...]] = {
     "ASI": ("?ASI", "?ASIS", "?IAS", "?FWT", "WAIST?FRONT", "?WAISTFRONT", "?SIAS"),
     "PSI": ("?PSI", "?PSIS", "?IPS", "?BWT", "WAIST?BACK", "?WAISTBACK", "?SIPS"),
     "HJC": ("?HJC",),
+    "GTR": ("?GTR", "?TRO", "?GTRO", "?TROCH", "?TROCHANTER", "?GT", "?GRT", "?TRC"),
     "KJC": ("?KJC",),
     "KNE": (
         "?KNE", "?KNEE", "?KNEELAT", "?KNEELATERAL", "?LATKNEE", "?KNEEOUT", "?FLE", "?LEK",
         "?LEPI", "?LFC", "?KNEL", "?LE", "?LKNE", "?KNELAT", "?LKNEE", "?KNEELATEPICONDYLE",
-        "?LATFEMEPI", "?KL", "?KNEE1",
+        "?LATFEMEPI", "?KL", "?KNEE1", "?KNJNTLN",
     ),
     "KNM": (
         "?KNM", "?MKNE", "?KNEM", "?KNI", "?KNEEMED", "?KNEEMEDIAL", "?MEDKNEE", "?KNEEIN", "?FME",
@@ -36,10 +37,11 @@ _SIDED: dict[str, tuple[str, ...]] = {
     "ANK": (
         "?ANK", "?ANKLE", "?ANKLELAT", "?ANKLELATERAL", "?LATANKLE", "?ANKLEOUT", "?FAL", "?LMAL",
         "?ANKL", "?LM", "?LATMALLEOLUS", "?LMALL", "?LANK", "?LANKLE", "?AL", "?MALL", "?MALLEOLUS",
+        "?LMA",
     ),
     "ANM": (
         "?ANM", "?MANK", "?ANKM", "?MED", "?ANKLEMED", "?ANKLEMEDIAL", "?MEDANKLE", "?ANKLEIN",
-        "?TAM", "?MMAL", "?MM", "?MEDMALLEOLUS", "?MMALL", "?MANKLE", "?AM",
+        "?TAM", "?MMAL", "?MM", "?MEDMALLEOLUS", "?MMALL", "?MANKLE", "?AM", "?MMA",
     ),
     "TOE": (
         "?TOE", "?TOES", "?TOETIP", "?MT2", "?SMH", "?SM", "?FOREFOOT2", "?2MH", "?MTH2", "?TOE2",
@@ -141,8 +143,9 @@ _PLACES = {alias: place for place, aliases in _MIDDLE.items() for alias in alias
     for alias in aliases
     for side in "LR"
 }
-_UPPER_ARMS = ("arm", "upperarm", "uparm", "armupper", "humerus")
+_UPPER_ARMS = ("arm", "upperarm", "uparm", "armupper", "humerus", "uar")
 """Words for a joint at the upper end of the upper arm."""
+_SHOULDERS = ("shoulder", "sho")
 _XSENS = re.compile(r"^p(?=[A-Z])")
 """The letter with which Xsens begins the labels of points on the skin."""
 _UNLABELED = re.compile(r"(|\*\d*|U_?\d+|UNLABELL?ED.*|M\d{3,}|UN-?NAMED.*)", re.IGNORECASE)
@@ -182,6 +185,6 @@ def markers_by_place(labels: Sequence[str]) -> dict[str, int]:
     found: dict[str, int] = {}
     for marker, (label, (side, word)) in enumerate(zip(labels, keys, strict=True)):
         place = place_on_body(label)
-        if place is not None and not (word == "shoulder" and side in with_arm):
+        if place is not None and not (word in _SHOULDERS and side in with_arm):
             found.setdefault(place, marker)
     return found

@@ -22,6 +22,7 @@ from app.motion.roles.marker_names import (
         ("Top.Head", "TOPHD"), ("LFHD", "LFHD"), ("RIEL", "RELM"), ("LHJC", "LHJC"),
         ("r mall", "RANK"), ("l met", "LMT5"), ("r should", "RSHO"), ("l knee 1", "LKNE"),
         ("RKM", "RKNM"), ("LAL", "LANK"), ("RAM", "RANM"), ("L.Acromium", "LSHO"),
+        ("RLMA", "RANK"), ("LMMA", "LANM"), ("r_knjntln", "RKNE"), ("LTRO", "LGTR"),
         ("LTHI", None), ("", None), ("L", None), ("LEFT", None), ("\N{KELVIN SIGN}", None),
     ],
 )  # fmt: skip
@@ -40,6 +41,10 @@ def test_labels_that_are_not_markers() -> None:
         assert not is_marker(label), label
     for label in ("LKNE", "C7", "M1", "Ulna", "Forehead"):
         assert is_marker(label), label
+
+
+def test_a_shoulder_beside_an_upper_arm_is_a_collar_bone() -> None:
+    assert markers_by_place(["LSHO", "LUAR", "RSHO"]) == {"RSHO": 2}
 
 
 def test_the_first_marker_of_a_place_is_used() -> None:
