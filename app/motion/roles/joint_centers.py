@@ -25,7 +25,7 @@ Recipe = tuple[str, ...]
 
 _SIDED: dict[str, tuple[Recipe, ...]] = {
     "knee": (("?KJC",), ("?KNE", "?KNM"), ("?KNE",)),
-    "foot": (("?AJC",), ("?ANK", "?ANM"), ("?ANK",)),
+    "foot": (("?AJC",), ("?ANK", "?ANM"), ("?ANK",), ("?HEE", "?MFS"), ("?HEE",)),
     "toes": (("?TOE",), ("?MT1", "?MT5"), ("?MT5",)),
     "shoulder": (("?SJC",), ("?SHO",)),
     "elbow": (("?EJC",), ("?ELB", "?ELM"), ("?ELB",)),

@@ -53,6 +53,8 @@ _SIDED: dict[str, tuple[str, ...]] = {
     "hand": ("wrist", "wra", "wrb", "hand", "han"),
 }  # fmt: skip
 _ALIASES_WITH_SIDE = frozenset(alias for aliases in _SIDED.values() for alias in aliases)
+_ALIASES_BEFORE_SIDE = _ALIASES_WITH_SIDE - {"ule", "lle", "foo", "uar", "lar", "han"}
+"""Without the words of A.R.T., which follow the side: `LLEL` is the lateral side of an elbow."""
 
 _PREFIX = re.compile(
     r"(mixamorig\d*|bip\d*|valvebiped|cc_base|character\d*|def|org|jnt|joint|bone|bn|sk|b|j|c)"
@@ -184,6 +186,6 @@ def _side_without_separator(word: str) -> tuple[Side | None, str]:
     for mark, side in _SIDES.items():
         if word.startswith(mark) and word.removeprefix(mark) in _ALIASES_WITH_SIDE:
             return side, word.removeprefix(mark)
-        if word.endswith(mark) and word.removesuffix(mark) in _ALIASES_WITH_SIDE:
+        if word.endswith(mark) and word.removesuffix(mark) in _ALIASES_BEFORE_SIDE:
             return side, word.removesuffix(mark)
     return None, word

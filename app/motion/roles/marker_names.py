@@ -43,6 +43,8 @@ _SIDED: dict[str, tuple[str, ...]] = {
         "?ANM", "?MANK", "?ANKM", "?MED", "?ANKLEMED", "?ANKLEMEDIAL", "?MEDANKLE", "?ANKLEIN",
         "?TAM", "?MMAL", "?MM", "?MEDMALLEOLUS", "?MMALL", "?MANKLE", "?AM", "?MMA",
     ),
+    "HEE": ("?HEE", "?HEEL", "?CAL", "?CALC", "?HEELBACK", "?FCC"),
+    "MFS": ("?MIDFOOTSUP",),
     "TOE": (
         "?TOE", "?TOES", "?TOETIP", "?MT2", "?SMH", "?SM", "?FOREFOOT2", "?2MH", "?MTH2", "?TOE2",
     ),
@@ -58,11 +60,11 @@ _SIDED: dict[str, tuple[str, ...]] = {
     "EJC": ("?EJC",),
     "ELB": (
         "?ELB", "?ELBOW", "?ELBLAT", "?ELBOWLAT", "?ELBOWLATERAL", "?ELBOWOUT", "?HLE", "?EL",
-        "?LELBOW", "?ELBL", "?ARMLATEPICONDYLE", "?LHE", "?ELBLATERAL",
+        "?LELBOW", "?ELBL", "?ARMLATEPICONDYLE", "?LHE", "?ELBLATERAL", "?LEL",
     ),
     "ELM": (
         "?ELM", "?MELB", "?ELBM", "?ELBMED", "?ELBOWMED", "?ELBOWMEDIAL", "?ELBOWIN", "?HME",
-        "?IEL", "?MELBOW", "?ARMMEDEPICONDYLE", "?MHE",
+        "?IEL", "?MELBOW", "?ARMMEDEPICONDYLE", "?MHE", "?MEL",
     ),
     "WJC": ("?WJC",),
     "WRA": (
@@ -143,6 +145,8 @@ _PLACES = {alias: place for place, aliases in _MIDDLE.items() for alias in alias
     for alias in aliases
     for side in "LR"
 }
+_WITHOUT_SIDE = ("HEEL",)
+"""Words that end with the letter of a side and have none."""
 _UPPER_ARMS = ("arm", "upperarm", "uparm", "armupper", "humerus", "uar")
 """Words for a joint at the upper end of the upper arm."""
 _SHOULDERS = ("shoulder", "sho")
@@ -169,7 +173,7 @@ def place_on_body(label: str) -> str | None:
     """The place on the body, for example "LKNE" or "C7"; None if no marker set has the label."""
     key = re.sub(r"[\W_]", "", _XSENS.sub("", label)).upper().removesuffix("STUDY")
     key = re.sub(r"^(LEFT|RIGHT)", lambda side: side.group()[0], key)
-    if key not in _PLACES and key.endswith(("L", "R")):
+    if key not in _PLACES and key.endswith(("L", "R")) and key not in _WITHOUT_SIDE:
         key = key[-1] + key[:-1]
     return _PLACES.get(key)
 
