@@ -23,7 +23,8 @@ from app.motion.roles.marker_names import (
         ("r mall", "RANK"), ("l met", "LMT5"), ("r should", "RSHO"), ("l knee 1", "LKNE"),
         ("RKM", "RKNM"), ("LAL", "LANK"), ("RAM", "RANM"), ("L.Acromium", "LSHO"),
         ("RLMA", "RANK"), ("LMMA", "LANM"), ("r_knjntln", "RKNE"), ("LTRO", "LGTR"),
-        ("LLEL", "LELB"), ("RMEL", "RELM"),        ("L.Heel", "LHEE"), ("RCAL", "RHEE"), ("L.Midfoot.Sup", "LMFS"),
+        ("LLEL", "LELB"), ("RMEL", "RELM"), ("L.Heel", "LHEE"),
+        ("RCAL", "RHEE"), ("L.Midfoot.Sup", "LMFS"),
         ("LTHI", None), ("", None), ("L", None), ("LEFT", None), ("\N{KELVIN SIGN}", None),
     ],
 )  # fmt: skip
