@@ -15,12 +15,10 @@ from app.errors import Place, Unreadable
 from app.formats.common.names import without_common_prefix
 from app.formats.markers.tracks import Tracks
 from app.motion.roles.marker_names import is_marker, markers_by_place, subject_and_label
-from app.motion.skeleton.occlusion import Gap
+from app.motion.skeleton.occlusion import Gap, without_sentinels
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import BoolArray, FloatArray
 
-MIN_SENTINEL = 900.0
-"""The smallest number that stands for a marker that was not seen."""
 MIN_PREFIXED = 8
 """The fewest labels whose common beginning counts as the name of a subject."""
 MAX_MARKERS_SHOWN = 8
@@ -50,7 +48,7 @@ def labeled_markers(points: Tracks) -> Markers:
     no labeled marker is ever seen.
     """
     split = _split(points.labels)
-    points = replace(points, positions=_without_sentinels(points.positions))
+    points = replace(points, positions=without_sentinels(points.positions))
     named = [
         index
         for index, (_, label) in enumerate(split)
@@ -59,7 +57,8 @@ def labeled_markers(points: Tracks) -> Markers:
     seen = np.isfinite(points.positions[..., 0])
     named = [index for index in named if seen[:, index].any()]
     if not named:
-        message = "expected labeled markers, found none that is seen"
+        found = _listed([label[:40] for label in points.labels if label]) or "no labels"
+        message = f"expected labeled markers that are seen, found: {found}"
         raise Unreadable(message, places=[Place("labels", message)])
     subject, cautions = _main_subject([split[index] for index in named])
     mine = [index for index in named if split[index][0] == subject]
@@ -77,22 +76,6 @@ def labeled_markers(points: Tracks) -> Markers:
         first,
         cautions + more_cautions,
     )
-
-
-def _without_sentinels(positions: FloatArray) -> FloatArray:
-    """The positions with NaN where all three coordinates are one large number, such as 9999.99.
-
-    Programs write such numbers for markers that were not seen. No marker is there by chance.
-    """
-    x, y, z = np.moveaxis(positions, -1, 0)
-    same = x == y
-    if not same.any():
-        return positions
-    with np.errstate(invalid="ignore"):
-        same &= (x == z) & (np.abs(x) >= MIN_SENTINEL)
-    seen = positions.copy()
-    seen[same] = np.nan
-    return seen
 
 
 def _split(labels: Sequence[str]) -> list[tuple[str, str]]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.errors import Place, Unreadable
-from app.motion.skeleton.occlusion import Gap, fill_gaps, runs
+from app.motion.skeleton.occlusion import Gap, fill_gaps, runs, without_sentinels
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import BoolArray, FloatArray
 
@@ -39,6 +39,7 @@ def without_gaps(positions: FloatArray, names: Sequence[str] | None, rate: float
     names: (joints,) or None. rate: Hz, None if unknown. Raises Unreadable with the joints and the
     frames of long gaps if no stretch is long enough.
     """
+    positions = without_sentinels(positions)
     if np.isfinite(positions).all():
         return Whole(positions)
     rate = rate or RATE_FOR_GAPS
