@@ -46,11 +46,12 @@ def doubts_about(motion: Motion, *, is_rigid: bool) -> tuple[Caution, ...]:
     """
     sampled = some_frames(motion.positions, MAX_SAMPLED_FRAMES)
     bones = _bones(motion)
-    usual = np.median(_lengths(sampled, bones, motion), axis=0)
+    lengths = _lengths(sampled if is_rigid else motion.positions, bones, motion)
+    usual = np.median(some_frames(lengths, MAX_SAMPLED_FRAMES), axis=0)
     usual_lengths = dict(zip(bones, usual.tolist(), strict=True))
     found = [*_unequal_limbs(motion, usual_lengths), *side_doubts(motion, sampled)]
     if not is_rigid:
-        found += islice(_length_jumps(motion, usual_lengths), MAX_NAMED)
+        found += islice(_length_jumps(motion, usual_lengths, lengths), MAX_NAMED)
         found += islice(_frozen_markers(motion), MAX_NAMED)
     return tuple(found)
 
@@ -89,9 +90,13 @@ def _unequal_limbs(motion: Motion, usual: Mapping[_Bone, float]) -> Iterator[Cau
             )
 
 
-def _length_jumps(motion: Motion, usual: Mapping[_Bone, float]) -> Iterator[Caution]:
-    """A caution for each bone whose length changes as that of no bone does."""
-    lengths = _lengths(motion.positions, list(usual), motion)
+def _length_jumps(
+    motion: Motion, usual: Mapping[_Bone, float], lengths: FloatArray
+) -> Iterator[Caution]:
+    """A caution for each bone whose length changes as that of no bone does.
+
+    lengths: (frames, bones) in the order of `usual`.
+    """
     medians = np.array(list(usual.values()))
     allowed = np.maximum(MAX_LENGTH_CHANGE * medians, MIN_LENGTH_CHANGE)
     changes = np.abs(lengths - medians)
