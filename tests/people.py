@@ -147,6 +147,9 @@ CONVENTIONS: dict[str, dict[JointRole, str]] = {
         "J_Bip_{0}_UpperArm J_Bip_{0}_LowerArm J_Bip_{0}_Hand J_Bip_{0}_UpperLeg"
         " J_Bip_{0}_LowerLeg J_Bip_{0}_Foot J_Bip_{0}_ToeBase", "L", "R",
     ),
+    "A.R.T.": convention(
+        "PELV UTSP NECK HEAD", "{}UAR {}LAR {}HAN {}ULE {}LLE {}FOO {}TOE", "L", "R"
+    ),
     "plug-in-gait": convention(
         "pelvis thorax C7 head", "{}SHO {}ELB {}WRA {}HIP {}KNE {}ANK {}TOE", "L", "R"
     ),

@@ -202,6 +202,8 @@ def _details(clip: Clip) -> list[tuple[str, object]]:
         ("joints", clip.joints),
         ("created", f"{clip.created_at:%Y-%m-%d %H:%M:%S} UTC"),
     ]
+    if clip.start_offset:
+        rows.append(("begins", f"{clip.start_offset:.3f} s after the start of the file"))
     rows += [("reanalysis", clip.reanalysis)] if clip.reanalysis else []
     rows += [(f"warning {one.code}", one.detail) for one in clip.warnings]
     if clip.error is not None:

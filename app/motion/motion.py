@@ -19,7 +19,7 @@ class Motion:
     float32, in the world, meters, Y up. roles: the joint of each role that was found.
     missing_roles: the roles of Sun's 13 that were not found. frame_rate: Hz, the one that is used.
     declared_frame_rate: Hz as in the file, or None. metres_per_unit: the scale that was applied to
-    the numbers of the file.
+    the numbers of the file. start_offset: seconds from the start of the file to the first frame.
     """
 
     format: str
@@ -32,6 +32,7 @@ class Motion:
     declared_frame_rate: float | None
     metres_per_unit: float
     cautions: tuple[Caution, ...] = ()
+    start_offset: float = 0.0
 
     @property
     def frames(self) -> int:

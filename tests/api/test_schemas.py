@@ -58,6 +58,7 @@ CLIP = ClipRecord(
     hints=AnalysisHints(frame_rate=60.0, audio_offset=-1.5),
     audio=AttachedAudio("b" * 64, "secret.wav", 7),
     audio_offset=0.5,
+    start_offset=0.0,
     analysis_version=3,
     reanalysis=None,
     is_changed=True,

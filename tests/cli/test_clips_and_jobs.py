@@ -7,12 +7,14 @@ import io
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from app.api.schemas.clips import Clip
 from app.api.schemas.jobs import Job
 from app.demo import demo_clips
 from tests.cli.conftest import Ended, Kinedex
+from tests.formats.c3d.files import c3d, marker_person, stacked
 from tests.live import Live
 
 FAILURE, USAGE = 1, 2
@@ -106,6 +108,26 @@ def test_clips_of_a_folder_are_listed(kinedex: Kinedex) -> None:
     clips = rows(kinedex("clips", "list", "--limit", "0", "--csv"))
     of_ada = [clip["id"] for clip in clips if clip["path"].startswith("ada/")]
     assert _ids(kinedex, "--folder", "ada", "--limit", "0") == of_ada != []
+
+
+def test_doubts_and_the_start_of_a_clip_are_shown(kinedex_alone: Kinedex, tmp_path: Path) -> None:
+    tracks, _ = marker_person(frames=90)
+    positions, labels = stacked(tracks)
+    empty = np.full((30, *positions.shape[1:]), np.nan)
+    positions[40:50, labels.index("LKNE")] += 2000
+    file = tmp_path / "late.c3d"
+    file.write_bytes(c3d(np.concatenate([empty, positions]), labels))
+    imported = kinedex_alone("import", str(file))
+    assert imported.code == 0, imported.err
+    said = " ".join(imported.out.split())
+    assert "bone_length_jumps" in said
+    assert "LeftKnee" in said
+    assert "frames 40 to 49" in said
+    (clip,) = _ids(kinedex_alone)
+    assert kinedex_alone("clips", "show", clip, "--json").json()["start_offset"] == 0.3
+    shown = " ".join(kinedex_alone("clips", "show", clip).out.split())
+    assert "begins 0.300 s after the start of the file" in shown
+    assert "warning bone_length_jumps" in shown
 
 
 def test_a_clip_is_deleted_only_if_the_user_agrees(kinedex: Kinedex, tmp_path: Path) -> None:

@@ -65,7 +65,7 @@ RIGHT: dict[str, Right] = {
     "f05_joints_with_collar.c3d": Right(stature=1.76, silent=True),
     "f06_arms_swapped.c3d": Right(cautions=("sides_suspect",)),
     "f06b_marker_frozen_on_floor.c3d": Right(cautions=("marker_frozen",)),
-    "f06c_sentinel_9999.c3d": Right(cautions=("bone_length_jumps",)),
+    "f06c_sentinel_9999.c3d": Right(cautions=("gaps_filled",), stature=1.8),
     "f10c_lower_body_gait.c3d": Right(cautions=("lower_body_only",)),
     "f11d_left_first.npy": Right(cautions=("sides_suspect",)),
     "f14_coco_names.npz": Right(cautions=("joints_made",), head=1.54),

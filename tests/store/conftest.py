@@ -64,6 +64,7 @@ def facts(**changes: Any) -> ClipFacts:
         "missing_roles": ("left_hand",),
         "warnings": (ClipWarning("frame_rate_suspect", "looks like 60", 60.0),),
         "analysis_version": 1,
+        "start_offset": 1.25,
     }
     return ClipFacts(**values | changes)
 

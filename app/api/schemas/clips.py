@@ -122,6 +122,11 @@ class Clip(Outgoing):
     frame_rate: float | None = Field(description="Frames per second, as used.")
     declared_frame_rate: float | None = Field(description="Frames per second, as the file says.")
     duration: float | None = Field(description="Seconds.")
+    start_offset: float | None = Field(
+        description="Seconds from the start of the file to the clip's first frame. Add them to a"
+        " time of the clip to find it in your own program. It is 0 unless frames at the start have"
+        " no body, or the animation begins later; negative if the animation begins before 0 s."
+    )
     joints: int | None = Field(description="Number of joints.")
     roles: dict[str, str] = Field(description="Joint name by joint role.")
     missing_roles: list[str]

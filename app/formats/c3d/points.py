@@ -101,8 +101,10 @@ def _positions(
         values = numbers.floats(raw).reshape(shape)
         positions = values[..., :3].copy()
     # A point was not seen if it has NaN, three zeros, or a negative residual.
+    x, y, z = np.moveaxis(positions, -1, 0)
     with np.errstate(invalid="ignore"):
-        seen = (np.abs(positions) <= MAX_MAGNITUDE).all(axis=-1) & (positions != 0).any(axis=-1)
+        largest = np.maximum(np.maximum(np.abs(x), np.abs(y)), np.abs(z))
+        seen = (largest <= MAX_MAGNITUDE) & (largest > 0)
         by_residual = seen & (values[..., 3] >= 0)
     cautions: tuple[Caution, ...] = ()
     if seen.any() and not by_residual.any():

@@ -19,6 +19,7 @@ from app.formats.common.numbers import MAX_MAGNITUDE
 from app.formats.common.stacks import choose_stack, stack_caution
 from app.formats.common.world_positions import MAX_JOINT_FRAMES, Solved, solve
 from app.formats.fbx.animation import Stack, find_stacks
+from app.formats.fbx.curves import KTIME
 from app.formats.fbx.objects import Numbers
 from app.formats.fbx.opening import open_fbx
 from app.formats.fbx.scene import FbxScene
@@ -150,6 +151,7 @@ def _recording(
         is_up_axis_said="UpAxis" in scene.settings,
         metres_per_unit=factor if SCALES[0] <= factor <= SCALES[1] else None,
         cautions=cautions,
+        start_frame=float(timing.ticks[0]) / KTIME * timing.frame_rate,
     )
 
 

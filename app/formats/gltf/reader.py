@@ -71,8 +71,10 @@ def read_gltf(content: bytes, stack: str | None = None) -> Recording:
         translations=solved.translations,
         frame_rate=rate,
         up_axis="y",
+        is_up_axis_said=True,
         metres_per_unit=1.0,
         cautions=body.cautions + stack_caution(names, lengths, chosen),
+        start_frame=float(seconds[0]) * rate,
     )
 
 

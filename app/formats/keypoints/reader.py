@@ -36,6 +36,10 @@ _NAMES = (
 )  # fmt: skip
 _RATES = ("fps", "frame_rate", "framerate", "frameRate", "FPS", "rate")
 _META = ("meta_info", "meta", "metadata", "info", "header")
+_OF_PICTURES = ("landmarks",)
+"""The names of keypoints that MediaPipe gives as shares of the picture's width and height."""
+MIN_PIXELS = 20.0
+"""The smallest width or height of a body in pixels. In meters, no body moves so far."""
 _VISIBILITIES = frozenset((0.0, 1.0, 2.0))
 """The third numbers of 2-D keypoints in the COCO format."""
 
@@ -97,12 +101,25 @@ def _positions(people: Sequence[Person | None]) -> FloatArray:
     if width == 4:
         seen &= numbers[..., 3] > 0
     positions = numbers[..., :3]
-    if set(np.unique(positions[seen][:, 2])) <= _VISIBILITIES:
-        raise _flat(first, "the visibility of each keypoint in place of z")
     if np.nanmax(np.abs(positions), initial=0.0) > MAX_MAGNITUDE:
         raise unreadable_at("JSON", f"expected numbers within ±{MAX_MAGNITUDE:g}")
+    _refuse_pictures(positions[seen], first)
     positions[~seen | ~np.isfinite(positions).all(axis=-1)] = np.nan
     return positions.astype(np.float32)
+
+
+def _refuse_pictures(points: FloatArray, person: Person) -> None:
+    """Raise FormatNotSupported if points (n, 3) are places in a picture. person: for the error."""
+    points = points[np.isfinite(points).all(axis=1)]
+    if not len(points):
+        return
+    low, high = points.min(axis=0), points.max(axis=0)
+    # Confidences are within 0 and 1. A body in pixels is much larger than that.
+    are_confidences = low[2] >= 0 and high[2] <= 1 and max((high - low)[:2]) > MIN_PIXELS
+    if are_confidences or set(np.unique(points[:, 2])) <= _VISIBILITIES:
+        raise _flat(person, "a visibility or a confidence in place of z")
+    if person.key in _OF_PICTURES and min(low[:2]) >= 0 and max(high[:2]) <= 1:
+        raise _flat(person, "places in a picture, as shares of its width and height")
 
 
 def _flat(person: Person, found: str) -> FormatNotSupported:

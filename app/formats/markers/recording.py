@@ -61,7 +61,7 @@ def recording_of_markers(tracks: Tracks, format: str) -> Recording:
     filled = _filled(markers, rate)
     stretch = readable_stretch(markers, filled.positions, rate)
     positions = filled.positions[stretch]
-    good = np.isfinite(positions).all(axis=(0, 2))
+    good = np.isfinite(positions[..., 0]).all(axis=0)
     usable = {marker: positions[:, marker] for marker in np.flatnonzero(good).tolist()}
     centers = centers_of(markers, usable)
     skeleton, positions = _skeleton(markers.labels, usable, centers)
@@ -74,9 +74,10 @@ def recording_of_markers(tracks: Tracks, format: str) -> Recording:
         frame_rate=tracks.frame_rate,
         up_axis=tracks.up_axis,
         metres_per_unit=tracks.metres_per_unit,
+        start_frame=markers.skipped + stretch.start,
         cautions=tracks.cautions
         + markers.cautions
-        + stretch_caution(markers, stretch, rate)
+        + stretch_caution(markers, stretch)
         + gap_cautions(markers, filled.frames, np.flatnonzero(~good).tolist()),
     )
 

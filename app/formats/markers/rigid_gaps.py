@@ -37,8 +37,9 @@ MAX_DONORS = 6
 MIN_SPREAD = 0.05
 """The smallest second singular value of three neighbors, as a share of the first. Below it, they
 are on a line, about which the turn is unknown."""
-MAX_COMPARED_FRAMES = 500
-"""About the number of frames, evenly spaced, in which distances are compared."""
+MAX_COMPARED_FRAMES, MAX_MEASURED_FRAMES = 500, 50
+"""About the number of frames, evenly spaced, in which distances are compared, and in which the size
+of the body is measured."""
 
 
 def fill_by_neighbors(
@@ -78,13 +79,13 @@ def _part(label: str) -> int:
 
 
 def _size(positions: FloatArray) -> float:
-    """The diagonal of the body: of the box around the median positions of its markers."""
-    some = positions[:: max(1, len(positions) // MAX_COMPARED_FRAMES)]
+    """The diagonal of the body: of the box around the mean positions of its markers."""
+    some = positions[:: max(1, len(positions) // MAX_MEASURED_FRAMES)]
     # Relative to the middle of all markers, so that the way through the room does not count.
     with np.errstate(invalid="ignore"), warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # markers that are not seen in any frame
-        middle = np.nanmedian(some, axis=1, keepdims=True)
-        usual = np.nanmedian(some - middle, axis=0)
+        middle = np.nanmean(some, axis=1, keepdims=True)
+        usual = np.nanmean(some - middle, axis=0)
     usual = usual[np.isfinite(usual).all(axis=-1)]
     return float(np.linalg.norm(np.ptp(usual, axis=0))) if len(usual) else 0.0
 

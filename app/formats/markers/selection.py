@@ -16,12 +16,10 @@ from app.formats.common.names import without_common_prefix
 from app.formats.markers.tracks import Tracks
 from app.kinedex_error import Place
 from app.motion.roles.marker_names import is_marker, markers_by_place, subject_and_label
-from app.motion.skeleton.occlusion import Gap
+from app.motion.skeleton.occlusion import Gap, without_sentinels
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import BoolArray, FloatArray
 
-MIN_SENTINEL = 900.0
-"""The smallest number that stands for a marker that was not seen."""
 MIN_PREFIXED = 8
 """The fewest labels whose common beginning counts as the name of a subject."""
 MAX_MARKERS_SHOWN = 8
@@ -34,12 +32,13 @@ class Markers:
 
     labels: (markers,) without the name of the subject. positions: (frames, markers, 3) in the unit
     and axes of the file, NaN where a marker is not seen. first_frame: the number that the file
-    gives to the first frame.
+    gives to the first of these frames. skipped: the frames of the file before it.
     """
 
     labels: tuple[str, ...]
     positions: FloatArray
     first_frame: int
+    skipped: int = 0
     cautions: tuple[Caution, ...] = ()
 
 
@@ -50,7 +49,7 @@ def labeled_markers(points: Tracks) -> Markers:
     no labeled marker is ever seen.
     """
     split = _split(points.labels)
-    points = replace(points, positions=_without_sentinels(points.positions))
+    points = replace(points, positions=without_sentinels(points.positions))
     named = [
         index
         for index, (_, label) in enumerate(split)
@@ -59,7 +58,8 @@ def labeled_markers(points: Tracks) -> Markers:
     seen = np.isfinite(points.positions[..., 0])
     named = [index for index in named if seen[:, index].any()]
     if not named:
-        message = "expected labeled markers, found none that is seen"
+        found = _listed([label[:40] for label in points.labels if label]) or "no labels"
+        message = f"expected labeled markers that are seen, found: {found}"
         raise Unreadable(message, places=[Place("labels", message)])
     subject, cautions = _main_subject([split[index] for index in named])
     mine = [index for index in named if split[index][0] == subject]
@@ -69,31 +69,14 @@ def labeled_markers(points: Tracks) -> Markers:
     if last - first < len(seen):
         start, end = points.first_frame + first, points.first_frame + last - 1
         detail = f"no marker is seen before frame {start} or after frame {end}"
-        if points.frame_rate:
-            seconds = first / points.frame_rate
-            detail += f"; 0 s here is {seconds:.3f} s after the first frame of the file"
         more_cautions += (Caution("frames_trimmed", detail),)
     return Markers(
         tuple(split[index][1] for index in points_read),
         points.positions[first:last, points_read],
         points.first_frame + first,
+        first,
         cautions + more_cautions,
     )
-
-
-def _without_sentinels(positions: FloatArray) -> FloatArray:
-    """The positions with NaN where all three coordinates are one large number, such as 9999.99.
-
-    Programs write such numbers for markers that were not seen. No marker is there by chance.
-    """
-    x = positions[..., 0]
-    with np.errstate(invalid="ignore"):
-        same = (x == positions[..., 1]) & (x == positions[..., 2]) & (np.abs(x) >= MIN_SENTINEL)
-    if not same.any():
-        return positions
-    seen = positions.copy()
-    seen[same] = np.nan
-    return seen
 
 
 def _split(labels: Sequence[str]) -> list[tuple[str, str]]:
@@ -175,16 +158,15 @@ def gap_cautions(markers: Markers, filled: int, hidden: Sequence[int]) -> tuple[
     return cautions
 
 
-def stretch_caution(markers: Markers, stretch: slice, frame_rate: float) -> tuple[Caution, ...]:
-    """A caution if only a part of the frames is read. frame_rate: Hz."""
+def stretch_caution(markers: Markers, stretch: slice) -> tuple[Caution, ...]:
+    """A caution if only a part of the frames is read."""
     count = len(markers.positions)
     if stretch.stop - stretch.start == count:
         return ()
     first, last = markers.first_frame + stretch.start, markers.first_frame + stretch.stop - 1
     detail = (
-        f"markers that are needed are hidden for long times, so only frames {first} to {last} of"
-        f" {count} are read; 0 s here is {stretch.start / frame_rate:.3f} s after frame"
-        f" {markers.first_frame}"
+        f"markers that are needed are hidden for long times, so only frames {first} to {last} are"
+        f" read, which are {last - first + 1} of {count} frames"
     )
     return (Caution("frames_trimmed", detail),)
 

@@ -31,7 +31,7 @@ def readable_stretch(markers: Markers, positions: FloatArray, frame_rate: float)
     positions: (frames, markers, 3), NaN in gaps that were not filled. Raises Unreadable with the
     markers and their frames if no stretch is long enough.
     """
-    known: BoolArray = np.asarray(np.isfinite(positions).all(axis=-1))
+    known: BoolArray = np.asarray(np.isfinite(positions[..., 0]))
     blocked = {} if known.all() else _blocked_roles(markers.labels, known)
     if not blocked:
         return slice(0, len(known))

@@ -67,6 +67,7 @@ def read_mvnx(content: bytes) -> Recording:
         translations=None if world is None else _translations(positions, world, parents),
         frame_rate=_frame_rate(document),
         up_axis="z",
+        is_up_axis_said=True,
         metres_per_unit=1.0,
         cautions=_cautions(document),
     )

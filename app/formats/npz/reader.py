@@ -33,19 +33,16 @@ from app.formats.common.names import MAX_NAME_LENGTH
 from app.formats.common.numbers import MAX_MAGNITUDE
 from app.formats.common.world_positions import MAX_JOINT_FRAMES
 from app.formats.npz.arrays import Archive, numbers, read_npy, texts
+from app.formats.npz.gaps import Whole, without_gaps
 from app.formats.npz.joint_layouts import layout_of
 from app.formats.npz.keys import NamedArrays
 from app.formats.npz.smpl import read_smpl
 from app.kinedex_error import Place
 from app.motion.canonical.units import METERS_PER_UNIT
-from app.motion.skeleton.occlusion import fill_gaps
 from app.motion.skeleton.recording import Caution, Recording
 from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray, IntArray
 
-RATE_FOR_GAPS = 30.0
-"""Hz: the rate that converts gaps to seconds if the file does not give its rate."""
-MAX_GAPS_SHOWN = 8
 FRAME_RATES = (0.1, 10_000.0)
 """Hz: the smallest and the largest number that counts as a frame rate."""
 
@@ -73,33 +70,33 @@ def read_npy_positions(content: bytes) -> Recording:
 
     Raises Unreadable with the frame and the joint, and TooLarge.
     """
-    positions, filled = _filled(_checked_positions(read_npy(content), "array"), None, None)
-    skeleton, cautions = _skeleton_of_order(positions)
-    return _recording("npy", skeleton, positions, None, cautions=filled + cautions)
+    whole = without_gaps(_checked_positions(read_npy(content), "array"), None, None)
+    skeleton, cautions = _skeleton_of_order(whole.positions)
+    return _recording("npy", skeleton, whole, None, cautions=cautions)
 
 
 def _read_positions(arrays: NamedArrays) -> Recording:
     positions = _checked_positions(arrays.read("positions"), arrays.key("positions"))
     names = _names(arrays, positions.shape[1])
     rate = _frame_rate(arrays)
-    positions, filled = _filled(positions, names, rate)
+    whole = without_gaps(positions, names, rate)
     cautions: tuple[Caution, ...] = ()
     if names is None:
-        skeleton, cautions = _skeleton_of_order(positions)
+        skeleton, cautions = _skeleton_of_order(whole.positions)
     else:
         parents = arrays.numbers("parents")
         key = arrays.key("parents")
         above = parents_of(parents, key, names) if parents is not None else None
-        skeleton = _skeleton(names, above, positions)
+        skeleton = _skeleton(names, above, whole.positions)
         cautions = _duplicates(names)
     return _recording(
         "npz",
         skeleton,
-        positions,
+        whole,
         rate,
         unit=_unit(arrays),
         up_axis=_up_axis(arrays),
-        cautions=filled + cautions,
+        cautions=cautions,
     )
 
 
@@ -138,31 +135,6 @@ def _checked_positions(array: NDArray[Any] | None, key: str) -> FloatArray:
         raise too_large(key, f"expected at most {limits}, found {frames} frames x {joints} joints")
     checked = _checked_numbers(numbers(array, key), key, nan=True)
     return np.ascontiguousarray(checked, dtype=np.float32)
-
-
-def _filled(
-    positions: FloatArray, names: list[str] | None, rate: float | None
-) -> tuple[FloatArray, tuple[Caution, ...]]:
-    """The positions with filled gaps (NaN), and a caution about them.
-
-    Raises Unreadable with the joint and the frames of a gap that is too long to be filled.
-    """
-    if np.isfinite(positions).all():
-        return positions, ()
-    filled = fill_gaps(positions, rate or RATE_FOR_GAPS)
-    places = [
-        Place(
-            f"frame {gap.start}, joint {gap.marker}" + (f" ({names[gap.marker]})" if names else ""),
-            f"expected a position, found NaN in {gap.end - gap.start} frames",
-        )
-        for gap in filled.long_gaps[:MAX_GAPS_SHOWN]
-    ]
-    if places:
-        shown = "; ".join(f"{place.location}: {place.message}" for place in places)
-        raise Unreadable(f"Joints are hidden for too long to be filled in: {shown}", places=places)
-    share = 100 * filled.frames / (positions.shape[0] * positions.shape[1])
-    detail = f"joints hidden for short times were filled in: {share:.1f} % of their frames"
-    return filled.positions.astype(np.float32), (Caution("gaps_filled", detail),)
 
 
 def _checked_numbers(array: NDArray[Any], key: str, *, nan: bool = False) -> FloatArray:
@@ -284,7 +256,7 @@ def _skeleton(names: list[str], parents: IntArray | None, positions: FloatArray)
 def _recording(
     format_name: str,
     skeleton: Skeleton,
-    positions: FloatArray,
+    whole: Whole,
     frame_rate: float | None,
     *,
     unit: float | None = None,
@@ -300,14 +272,15 @@ def _recording(
             parents=_renumbered(skeleton.parents, order),
             offsets=skeleton.offsets[order],
         ),
-        positions=np.ascontiguousarray(positions[:, order]),
+        positions=np.ascontiguousarray(whole.positions[:, order]),
         rotations=None,
         translations=None,
         frame_rate=frame_rate,
         up_axis=up_axis or "y",
         is_up_axis_said=up_axis is not None,
         metres_per_unit=unit,
-        cautions=cautions,
+        cautions=whole.cautions + cautions,
+        start_frame=whole.start,
     )
 
 

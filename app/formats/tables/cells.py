@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from app.formats.bvh.frames import MAX_FRAMES
 from app.formats.common.failures import too_large, unreadable_line
 from app.formats.common.lines import filled_lines
 from app.formats.common.numbers import MAX_MAGNITUDE, excerpt
@@ -50,6 +51,8 @@ def read_numbers(text: bytes, first_line: int, columns: int, separator: bytes) -
     end of a line are empty. Raises Unreadable with the line, and TooLarge.
     """
     rows = text.count(b"\n") + 1
+    if rows > MAX_FRAMES:
+        raise too_large("table", f"expected at most {MAX_FRAMES} lines of numbers")
     if columns > MAX_COLUMNS or rows * columns > 3 * MAX_JOINT_FRAMES:
         raise too_large("table", f"expected at most {3 * MAX_JOINT_FRAMES} numbers")
     numbered = list(filled_lines(text, first_line))

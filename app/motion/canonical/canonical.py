@@ -23,6 +23,7 @@ from app.motion.motion import Motion
 from app.motion.plausibility.animals import refuse_animals
 from app.motion.plausibility.doubts import doubts_about
 from app.motion.roles.bodies import roles_of_one_body
+from app.motion.roles.estimated_knees import with_missing_knees
 from app.motion.roles.joint_roles import ESSENTIAL_ROLES, SUN_ROLES, JointRole
 from app.motion.roles.middles import with_given_middles, with_missing_middles
 from app.motion.roles.missing_joints import no_joints_for
@@ -56,6 +57,7 @@ def canonicalize(
         recording.skeleton.names, recording.skeleton.parents, recording.positions, given
     )
     recording, found, made = with_missing_middles(recording, found)
+    recording, found, knees = with_missing_knees(recording, found)
     missing = _missing_roles(found, recording.skeleton.names)
     axis, axis_cautions = _active_up_axis(recording, found, up_axis)
     unit = _active_unit(recording, found, metres_per_unit)
@@ -70,7 +72,8 @@ def canonicalize(
         frame_rate=rate,
         declared_frame_rate=recording.frame_rate,
         metres_per_unit=unit.metres_per_unit,
-        cautions=recording.cautions + others + made + axis_cautions + unit.cautions,
+        cautions=recording.cautions + others + made + knees + axis_cautions + unit.cautions,
+        start_offset=recording.start_frame / rate,
     )
     if not given and all(role in found for role in ESSENTIAL_ROLES):
         refuse_animals(motion, _rest(recording))

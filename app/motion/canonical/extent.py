@@ -42,6 +42,7 @@ MAX_STEP = _Limit(100.0, 1_000.0)
 body jumps where a real recording was cut."""
 MAX_DISTANCE = _Limit(10_000.0, 10_000.0)
 """The largest distance from the origin. Beyond it, float32 is less exact than a millimeter."""
+BLOCK_FRAMES = 10_000
 
 
 def check_extent(motion: Motion) -> tuple[Caution, ...]:
@@ -52,18 +53,21 @@ def check_extent(motion: Motion) -> tuple[Caution, ...]:
     size = _size(motion)
     own = sorted(set(motion.roles.values()))
     max_distance, max_reach = MAX_DISTANCE.in_meters(size), MAX_REACH.in_meters(size)
-    far = _first_beyond(motion.positions, max_distance, own)
+    is_far = max(motion.positions.max(), -motion.positions.min()) > max_distance
+    far = _first_beyond(motion.positions, max_distance, own) if is_far else None
     if far is not None:
         raise _refused(motion, far, max_distance, "from the origin")
     hips = motion.positions[:, motion.roles[JointRole.HIPS]]
     _refuse_jumps(MAX_STEP.in_meters(size), hips, motion)
-    for joint in own:
-        away = motion.positions[:, [joint]] - hips[:, None]
-        reached = _first_beyond(away, max_reach, [0])
+    # In blocks, to avoid a copy of a long clip.
+    for start in range(0, motion.frames, BLOCK_FRAMES):
+        block = slice(start, start + BLOCK_FRAMES)
+        away = motion.positions[block, own] - hips[block, None]
+        reached = _first_beyond(away, max_reach, range(len(own)))
         if reached is not None:
-            excess = _Excess(reached.frame, joint, reached.meters)
+            excess = _Excess(start + reached.frame, own[reached.joint], reached.meters)
             raise _refused(motion, excess, max_reach, "from the hips")
-    return _other_joints_caution(max_distance, motion)
+    return _other_joints_caution(max_distance, motion) if is_far else ()
 
 
 def _size(motion: Motion) -> float:

@@ -238,9 +238,10 @@ def _steps_alone(positions: FloatArray, rate: float) -> Iterator[_Finding]:
 
 def _steps(positions: FloatArray, rate: float) -> Iterator[_Finding]:
     """positions: (frames, 13, 3) in meters. A step ends when the other foot passes the first."""
-    smooth = _low_pass(positions, rate, STEP_CUTOFF)
-    leg = _leg_length(positions)
-    stride = _fore_aft_of_feet(smooth)
+    leg, lines = _leg_length(positions), _side_lines(positions)
+    if float(np.abs(lines[:, 1, ::2]).max()) < MIN_STEP_LENGTH * leg / 2:
+        return  # the feet are never far enough apart, so the filter is not needed
+    stride = _fore_aft(*_low_pass(lines, rate, STEP_CUTOFF).swapaxes(0, 1))
     crossings = np.flatnonzero(np.diff(np.sign(stride)))
     steps = [(b - a, float(np.abs(stride[a : b + 1]).max())) for a, b in pairwise(crossings)]
     times = [frames for frames, length in steps if length > MIN_STEP_LENGTH * leg]
@@ -266,16 +267,28 @@ def _leg_length(positions: FloatArray) -> float:
     return float(np.median(thigh + shank))
 
 
-def _fore_aft_of_feet(positions: FloatArray) -> FloatArray:
-    """(frames,) the distance of the left foot ahead of the right one, in meters."""
-    across = positions[:, _ROLE[JointRole.LEFT_KNEE]] - positions[:, _ROLE[JointRole.RIGHT_KNEE]]
-    shoulders = (JointRole.LEFT_SHOULDER, JointRole.RIGHT_SHOULDER)
-    wide = positions[:, _ROLE[shoulders[0]]] - positions[:, _ROLE[shoulders[1]]]
-    across = wide if np.any(wide) else across
+def _side_lines(positions: FloatArray) -> FloatArray:
+    """(frames, 2, 3) from the right shoulder to the left one, and from the right foot to the left.
+
+    positions: (frames, 13, 3). Without shoulders, the knees are used.
+    """
+    shoulders, knees, feet = (
+        positions[:, _ROLE[JointRole(f"left_{part}")]]
+        - positions[:, _ROLE[JointRole(f"right_{part}")]]
+        for part in ("shoulder", "knee", "foot")
+    )
+    return np.stack([shoulders if np.any(shoulders) else knees, feet], axis=1)
+
+
+def _fore_aft(across: FloatArray, feet: FloatArray) -> FloatArray:
+    """(frames,) the distance of the left foot ahead of the right one, in meters.
+
+    across: (frames, 3) a line from right to left. feet: (frames, 3) from the right foot to the
+    left one.
+    """
     # Forward is horizontal and at right angles to the line from right to left.
     forward = np.stack([-across[:, 2], across[:, 0]], axis=1)
     forward /= np.maximum(np.linalg.norm(forward, axis=1, keepdims=True), 1e-9)
-    feet = positions[:, _ROLE[JointRole.LEFT_FOOT]] - positions[:, _ROLE[JointRole.RIGHT_FOOT]]
     return np.asarray(np.sum(feet[:, [0, 2]] * forward, axis=1))
 
 

@@ -42,6 +42,8 @@ POWERS_OF_TEN = (1e-4, 10.0, 1e-5, 100.0)
 """Meters per unit of files that were scaled once too often, by 10 or 100."""
 MAX_GUESSED_FACTOR = 1.6
 """If no unit gives a stature within this factor of the typical one, the body is scaled to it."""
+MAX_MEASURED_FRAMES = 1_000
+"""About the number of frames, evenly spaced, in which bones are measured."""
 MAX_DECLARED_FACTOR = 2.5
 """The unit of a file is accepted if the stature is within this factor of the typical one."""
 
@@ -75,14 +77,15 @@ def stature(positions: FloatArray, roles: Mapping[JointRole, int]) -> float:
 
     roles: the joint of each role.
     """
-    estimates = []
-    for start, end, share in _SEGMENTS:
-        if start in roles and end in roles:
-            bone = positions[:, roles[end]] - positions[:, roles[start]]
-            length = float(np.median(np.linalg.norm(bone, axis=-1)))
-            if length > 0:
-                estimates.append(length / share)
-    return float(np.median(estimates)) if estimates else 0.0
+    known = [one for one in _SEGMENTS if one[0] in roles and one[1] in roles]
+    if not known:
+        return 0.0
+    starts, ends = [roles[start] for start, _, _ in known], [roles[end] for _, end, _ in known]
+    some = positions[:: max(1, len(positions) // MAX_MEASURED_FRAMES)]
+    bones = np.linalg.norm(some[:, ends] - some[:, starts], axis=-1)
+    estimates = np.median(bones, axis=0) / [share for *_, share in known]
+    estimates = estimates[estimates > 0]
+    return float(np.median(estimates)) if len(estimates) else 0.0
 
 
 def judge_unit(positions: FloatArray, roles: Mapping[JointRole, int]) -> Unit:

@@ -3,13 +3,14 @@
 An axis that the file says outright, or that a client says, is never judged. Else the usual axis of
 the format is up, unless the evidence is against it. The body stands along an axis if this leads
 from the feet to the hips and from the hips to the head. People also lie down, and walk on their
-hands. So if the body stands along another axis in nearly all frames, this is up only if one of
+hands. So if the body stands along another axis in most frames, this is up only if one of
 these holds:
 
 1. The rest pose stands along it, too.
 2. The body walks: the hips travel level, and one foot stands while they do.
 3. The body is straight, and by the usual axis it would be below the floor, or float above it. A
    lying body lies on something.
+4. Only the lower body was recorded, and the legs are straight: it is a person in a gait laboratory.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ import numpy as np
 
 from app.motion.roles.joint_roles import JointRole
 from app.motion.skeleton.recording import Caution
+from app.motion.skeleton.resampling import some_frames
 from app.numerics.arrays import BoolArray, FloatArray
 
 MIN_HEIGHT_RATIO = 2.0
@@ -31,9 +33,11 @@ MIN_SHARE_ALONG = 0.5
 MIN_STRAIGHT = 0.8
 """The smallest cosine between trunk or legs and the axis of a straight body. Who crawls has
 less."""
-MOST_FRAMES, FEW_FRAMES = 0.8, 0.05
+MOST_FRAMES, FEW_FRAMES = 0.6, 0.05
 """The share of frames in which a body must stand along another axis, and the largest share in which
-it may stand along the usual one."""
+it may stand along the usual one. People bend down meanwhile."""
+MOST_STRAIGHT_FRAMES = 0.8
+"""The share of frames in which a straight body is straight."""
 MAX_SAMPLED_FRAMES = 64
 """The most frames, evenly spaced, in which postures are measured."""
 MAX_BELOW_FLOOR, MAX_ABOVE_FLOOR = 0.06, 0.55
@@ -72,8 +76,7 @@ def judge_up_axis(
     usual in the format. The caution is also given if the body seems to lie in all frames, and could
     stand along another axis.
     """
-    frames = np.unique(np.linspace(0, len(positions) - 1, MAX_SAMPLED_FRAMES).astype(int))
-    body = _Body(positions[frames], roles)
+    body = _Body(some_frames(positions, MAX_SAMPLED_FRAMES), roles)
     standing = body.standing_axis()
     if standing is None or standing == usual or not body.stands_along(standing, usual):
         return usual, ()
@@ -81,6 +84,7 @@ def judge_up_axis(
     is_straight = body.is_straight(standing)
     if (
         resting == standing
+        or (is_straight and body.is_lower_body)
         or (is_straight and body.is_off_the_floor(usual))
         or _walks(positions, roles, standing, body.stature)
     ):
@@ -110,12 +114,13 @@ class _Body:
         self._positions, self._roles = positions, roles
         hips, top = roles.get(_R.HIPS), roles.get(_R.HEAD, roles.get(_R.NECK))
         low = _lower_ends(roles)
-        self.is_known = hips is not None and top is not None and bool(low)
-        if hips is None or top is None or not low:
+        self.is_known = hips is not None and bool(low)
+        self.is_lower_body = top is None
+        if hips is None or not low:
             return
         middle = positions[:, hips].astype(np.float64)
-        self.trunk = positions[:, top] - middle
         self.legs = middle - positions[:, low].mean(axis=1)
+        self.trunk = self.legs if top is None else positions[:, top] - middle
         self.over_feet = self.trunk + self.legs
 
     @cached_property
@@ -150,7 +155,7 @@ class _Body:
 
     def is_straight(self, axis: str) -> bool:
         """Whether trunk and legs are nearly parallel to `axis` in most frames."""
-        return float(np.mean(self._stands(axis, MIN_STRAIGHT))) >= MOST_FRAMES
+        return float(np.mean(self._stands(axis, MIN_STRAIGHT))) >= MOST_STRAIGHT_FRAMES
 
     def _stands(self, axis: str, share: float = MIN_SHARE_ALONG) -> BoolArray:
         """(frames,) whether both trunk and legs lead up, if `axis` is up.

@@ -7,6 +7,7 @@ torso + neck to head + shin.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,6 +40,13 @@ _LEFT_RIGHT: tuple[tuple[JointRole, JointRole], ...] = (
     (JointRole.LEFT_UPPER_LEG, JointRole.RIGHT_UPPER_LEG),
     (JointRole.LEFT_KNEE, JointRole.RIGHT_KNEE),
 )
+_MEASURED: tuple[tuple[JointRole, JointRole], ...] = (
+    (JointRole.HIPS, JointRole.NECK),
+    (JointRole.NECK, JointRole.HEAD),
+    (JointRole.LEFT_KNEE, JointRole.LEFT_FOOT),
+    (JointRole.RIGHT_KNEE, JointRole.RIGHT_FOOT),
+)
+"""The ends of the parts of the body length: torso, neck to head, and both shins."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,16 +124,11 @@ def body_length(motion: Motion) -> float:
     A missing head or foot counts with its usual proportion to the torso. Raises NotHuman for a
     body without size.
     """
-    roles, r = motion.roles, JointRole
-    torso = _distance(motion, r.HIPS, r.NECK)
-    shins = [
-        _distance(motion, knee, foot)
-        for knee, foot in ((r.LEFT_KNEE, r.LEFT_FOOT), (r.RIGHT_KNEE, r.RIGHT_FOOT))
-        if knee in roles and foot in roles
-    ]
-    has_head = r.HEAD in roles and r.NECK in roles
-    head = _distance(motion, r.NECK, r.HEAD) if has_head else torso * NECK_TO_HEAD_PER_TORSO
-    length = torso + head + (float(np.mean(shins)) if shins else torso * SHIN_PER_TORSO)
+    torso, head, *shins = _distances(motion, _MEASURED)
+    torso = torso or 0.0
+    known = [shin for shin in shins if shin is not None]
+    length = torso + (torso * NECK_TO_HEAD_PER_TORSO if head is None else head)
+    length += float(np.mean(known)) if known else torso * SHIN_PER_TORSO
     if not length > MIN_BODY_SIZE:
         message = "hips, neck, head, knees and feet all have the same position"
         raise NotHuman(f"The body has no size: {message}.", places=[Place("joints", message)])
@@ -143,11 +146,15 @@ def _at_analysis_rate(positions: FloatArray, rate: float) -> FloatArray:
     return resample(positions.astype(np.float64), rate, ANALYSIS_RATE)
 
 
-def _distance(motion: Motion, one: JointRole, other: JointRole) -> float:
-    if one not in motion.roles or other not in motion.roles:
-        return 0.0
-    line = motion.positions[:, motion.roles[one]] - motion.positions[:, motion.roles[other]]
-    return float(np.median(np.linalg.norm(line.astype(np.float64), axis=-1)))
+def _distances(motion: Motion, pairs: Sequence[tuple[JointRole, JointRole]]) -> list[float | None]:
+    """The median distance in meters of each pair of roles; None if one of them is missing."""
+    roles = motion.roles
+    found = [pair for pair in pairs if all(role in roles for role in pair)]
+    ones, others = ([roles[pair[end]] for pair in found] for end in (0, 1))
+    lines = motion.positions[:, ones] - motion.positions[:, others]
+    medians = np.median(np.linalg.norm(lines.astype(np.float64), axis=-1), axis=0)
+    by_pair = dict(zip(found, medians.tolist(), strict=True))
+    return [by_pair.get(pair) for pair in pairs]
 
 
 def _left_axis(motion: Motion) -> FloatArray | None:

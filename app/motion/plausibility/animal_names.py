@@ -12,6 +12,8 @@ from app.motion.roles.joint_roles import JointRole
 
 MIN_LEGS = 3
 """The fewest legs on one side of a body with more than four limbs."""
+MANY_LEGS_WEIGHT = 6
+"""More than all signs of a person together have."""
 
 _LIMBS = frozenset(("leg", "paw", "upleg"))
 _PLACES = frozenset(("front", "fore", "hind", "rear", "back", "mid", "middle"))
@@ -63,7 +65,7 @@ class Names:
 
 @lru_cache(maxsize=KEPT_SKELETONS)
 def named_signs(body: Names) -> tuple[Sign, ...]:
-    """The weight and the reason of each sign. A person has a weight of at most 2."""
+    """The weight and the reason of each sign. The names of a person have at most 2 together."""
     return tuple(_signs(body))
 
 
@@ -74,7 +76,7 @@ def _signs(body: Names) -> Iterator[Sign]:
         yield 3, f"it has a joint {body.names[animal]}"
     legs = _legs(body, words)
     if legs >= MIN_LEGS:
-        yield 3, f"it has {legs} legs on one side"
+        yield MANY_LEGS_WEIGHT, f"it has {legs} legs on one side"
     wing = next((joint for joint in _arms(body) if _is_wing(words[joint])), None)
     if wing is not None:
         yield 3, f"its arm is a wing ({body.names[wing]})"

@@ -20,6 +20,7 @@ from app.kinedex_error import Place
 from app.motion.motion import Motion
 from app.motion.plausibility.animal_names import Names, named_signs
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
+from app.motion.skeleton.resampling import some_frames
 from app.numerics.arrays import BoolArray, FloatArray
 
 MIN_WEIGHT = 3
@@ -79,22 +80,30 @@ class _Body:
     """The limbs of a motion in some frames; all vectors (frames, 3) in meters, Y up."""
 
     def __init__(self, motion: Motion) -> None:
-        frames = np.linspace(0, motion.frames - 1, MAX_SAMPLED_FRAMES).astype(int)
-        sampled = replace(motion, positions=motion.positions[np.unique(frames)])
-        roles = sampled.role_positions().astype(np.float64)
-        self.joints = {role: roles[:, index] for index, role in enumerate(SUN_ROLES)}
-        for role in (_R.LEFT_UPPER_LEG, _R.RIGHT_UPPER_LEG):
-            joint = motion.roles.get(role, motion.roles[_R.HIPS])
-            self.joints[role] = sampled.positions[:, joint].astype(np.float64)
+        sampled = some_frames(motion.positions, MAX_SAMPLED_FRAMES)
+        self.motion = replace(motion, positions=sampled)
         self.has_arms = all(
             JointRole(f"{side}_{part}") in motion.roles
             for side in ("left", "right")
             for part in ("shoulder", "elbow")
         )
-        self.trunk = self.joints[_R.NECK] - self.joints[_R.HIPS]
-        lengths = np.linalg.norm(self.trunk, axis=1)
+        neck, hips = (self.motion.positions[:, motion.roles[r]] for r in (_R.NECK, _R.HIPS))
+        trunk = neck.astype(np.float64) - hips
+        lengths = np.linalg.norm(trunk, axis=1)
         self.trunk_length = float(np.median(lengths))
-        self.rise = self.trunk[:, 1] / np.maximum(lengths, 1e-9)
+        self.rise = trunk[:, 1] / np.maximum(lengths, 1e-9)
+
+    @cached_property
+    def joints(self) -> dict[JointRole, FloatArray]:
+        """The positions of Sun's roles and of the upper legs."""
+        roles = self.motion.role_positions().astype(np.float64)
+        found: dict[JointRole, FloatArray] = {
+            role: roles[:, index] for index, role in enumerate(SUN_ROLES)
+        }
+        for role in (_R.LEFT_UPPER_LEG, _R.RIGHT_UPPER_LEG):
+            joint = self.motion.roles.get(role, self.motion.roles[_R.HIPS])
+            found[role] = self.motion.positions[:, joint].astype(np.float64)
+        return found
 
     @cached_property
     def leg_length(self) -> float:

@@ -17,6 +17,7 @@ from app.motion.plausibility.sides import side_doubts
 from app.motion.roles.joint_roles import JointRole
 from app.motion.skeleton.occlusion import runs
 from app.motion.skeleton.recording import Caution
+from app.motion.skeleton.resampling import some_frames
 from app.numerics.arrays import BoolArray, FloatArray
 
 MAX_SAMPLED_FRAMES = 64
@@ -43,13 +44,14 @@ def doubts_about(motion: Motion, *, is_rigid: bool) -> tuple[Caution, ...]:
 
     is_rigid: whether bones cannot change their lengths, as in a file of rotations.
     """
-    frames = np.unique(np.linspace(0, motion.frames - 1, MAX_SAMPLED_FRAMES).astype(int))
+    sampled = some_frames(motion.positions, MAX_SAMPLED_FRAMES)
     bones = _bones(motion)
-    usual = np.median(_lengths(motion.positions[frames], bones, motion), axis=0)
+    lengths = _lengths(sampled if is_rigid else motion.positions, bones, motion)
+    usual = np.median(some_frames(lengths, MAX_SAMPLED_FRAMES), axis=0)
     usual_lengths = dict(zip(bones, usual.tolist(), strict=True))
-    found = [*_unequal_limbs(motion, usual_lengths), *side_doubts(motion, frames)]
+    found = [*_unequal_limbs(motion, usual_lengths), *side_doubts(motion, sampled)]
     if not is_rigid:
-        found += islice(_length_jumps(motion, usual_lengths), MAX_NAMED)
+        found += islice(_length_jumps(motion, usual_lengths, lengths), MAX_NAMED)
         found += islice(_frozen_markers(motion), MAX_NAMED)
     return tuple(found)
 
@@ -88,9 +90,13 @@ def _unequal_limbs(motion: Motion, usual: Mapping[_Bone, float]) -> Iterator[Cau
             )
 
 
-def _length_jumps(motion: Motion, usual: Mapping[_Bone, float]) -> Iterator[Caution]:
-    """A caution for each bone whose length changes as that of no bone does."""
-    lengths = _lengths(motion.positions, list(usual), motion)
+def _length_jumps(
+    motion: Motion, usual: Mapping[_Bone, float], lengths: FloatArray
+) -> Iterator[Caution]:
+    """A caution for each bone whose length changes as that of no bone does.
+
+    lengths: (frames, bones) in the order of `usual`.
+    """
     medians = np.array(list(usual.values()))
     allowed = np.maximum(MAX_LENGTH_CHANGE * medians, MIN_LENGTH_CHANGE)
     changes = np.abs(lengths - medians)
@@ -115,9 +121,11 @@ def _frozen_markers(motion: Motion) -> Iterator[Caution]:
         return
     hips = motion.positions[:, motion.roles[_R.HIPS]]
     above = set(motion.parents.tolist())
-    for joint in np.flatnonzero(motion.parents < 0).tolist():
-        if joint in above:
-            continue
+    roots = np.flatnonzero(motion.parents < 0).tolist()
+    single = np.array([joint for joint in roots if joint not in above], dtype=np.int64)
+    # Two of these frames are in every run of `least` frames, so few markers remain.
+    x = motion.positions[:: least // 2, single, 0]
+    for joint in single[(x[1:] == x[:-1]).any(axis=0)].tolist():
         path = motion.positions[:, joint]
         still = np.all(path[1:] == path[:-1], axis=1)
         if still.all():

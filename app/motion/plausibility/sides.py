@@ -13,7 +13,7 @@ import numpy as np
 from app.motion.motion import Motion
 from app.motion.roles.joint_roles import JointRole
 from app.motion.skeleton.recording import Caution
-from app.numerics.arrays import FloatArray, IntArray
+from app.numerics.arrays import FloatArray
 
 MAX_OPPOSITE = -0.3
 """The largest mean cosine between two directions that count as opposite."""
@@ -24,12 +24,12 @@ _R = JointRole
 _Points = Mapping[JointRole, FloatArray]
 
 
-def side_doubts(motion: Motion, frames: IntArray) -> Iterator[Caution]:
+def side_doubts(motion: Motion, positions: FloatArray) -> Iterator[Caution]:
     """A caution if chest and hips, or the named sides and the feet, are opposite.
 
-    frames: (n,) the frames in which the sides are measured.
+    positions: (n, joints, 3) some frames of the motion, in which the sides are measured.
     """
-    positions = motion.positions[frames].astype(np.float64)
+    positions = positions.astype(np.float64)
     sampled = {role: positions[:, joint] for role, joint in motion.roles.items()}
     if _R.NECK not in sampled:
         return
@@ -39,7 +39,7 @@ def side_doubts(motion: Motion, frames: IntArray) -> Iterator[Caution]:
         hips = _left_line("knee", sampled, up)
     if hips is None:
         return
-    if chest is not None and float(np.mean(np.sum(chest * hips, axis=1))) < MAX_OPPOSITE:
+    if chest is not None and float(np.einsum("fc,fc->", chest, hips)) < MAX_OPPOSITE * len(hips):
         names = [motion.names[motion.roles[r]] for r in (_R.LEFT_SHOULDER, _R.RIGHT_SHOULDER)]
         detail = (
             f"chest and hips face opposite ways; {names[0]} and {names[1]}, or the legs, may be"
@@ -57,7 +57,7 @@ def _left_line(part: str, sampled: _Points, up: FloatArray) -> FloatArray | None
     if left not in sampled or right not in sampled:
         return None
     line = sampled[left] - sampled[right]
-    return _unit(line - np.sum(line * up, axis=1, keepdims=True) * up)
+    return _unit(line - np.einsum("fc,fc->f", line, up)[:, None] * up)
 
 
 def _forward_share(sampled: _Points, forward: FloatArray) -> float:
@@ -68,8 +68,11 @@ def _forward_share(sampled: _Points, forward: FloatArray) -> float:
     directions = [
         direction for side in ("left", "right") for direction in _directions(side, sampled)
     ]
-    along = sum(float(np.sum(direction * forward)) for direction in directions)
-    possible = sum(float(np.linalg.norm(direction, axis=1).sum()) for direction in directions)
+    if not directions:
+        return 0.0
+    lines = np.stack(directions)  # (directions, frames, 3)
+    along = float(np.einsum("dfc,fc->", lines, forward))
+    possible = float(np.sqrt(np.einsum("dfc,dfc->df", lines, lines)).sum())
     return along / max(possible, MIN_LENGTH)
 
 
@@ -80,8 +83,10 @@ def _directions(side: str, sampled: _Points) -> Iterator[FloatArray]:
         return
     hip = sampled.get(_R(f"{side}_upper_leg"), sampled[_R.HIPS])
     leg, thigh = sampled[foot] - hip, sampled[knee] - hip
-    squared = np.maximum(np.sum(leg * leg, axis=1, keepdims=True), MIN_LENGTH)
-    yield thigh - np.sum(thigh * leg, axis=1, keepdims=True) / squared * leg
+    along = np.einsum("fc,fc->f", thigh, leg) / np.maximum(
+        np.einsum("fc,fc->f", leg, leg), MIN_LENGTH
+    )
+    yield thigh - along[:, None] * leg
     if toes in sampled:
         yield sampled[toes] - sampled[foot]
 

@@ -52,10 +52,10 @@ def _bodies(names: Sequence[str], parents: IntArray, positions: FloatArray) -> l
     if np.count_nonzero(parents < 0) < 2:
         return []
     root_of = _roots(parents)
-    trees = [np.flatnonzero(root_of == root) for root in np.flatnonzero(parents < 0)]
-    large = [tree for tree in trees if len(tree) >= MIN_JOINTS]
-    if len(large) < 2:
+    roots = np.flatnonzero(np.bincount(root_of) >= MIN_JOINTS)
+    if len(roots) < 2:
         return []
+    large = [np.flatnonzero(root_of == root) for root in roots]
     return [tree for tree in large if _is_body(_roles_in(tree, names, parents, positions))]
 
 

@@ -5,7 +5,8 @@ clavicle, and that of the head is the mean of the markers of its band. Knee, ank
 are the middle of their two markers, or the outer marker alone. The outer marker is up to 5 cm away
 from the true center, but always on the same side. By Bell, Pedersen and Brand (1990), a hip joint
 is inward, below and behind the front pelvis marker by 14 %, 30 % and 22 % of the distance between
-the two front pelvis markers. No model of the person is fitted.
+the two front pelvis markers. Without pelvis markers, by Weinhandl and O'Connor (2010), it is a
+quarter of the way from one greater trochanter to the other. No model of the person is fitted.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ Recipe = tuple[str, ...]
 
 _SIDED: dict[str, tuple[Recipe, ...]] = {
     "knee": (("?KJC",), ("?KNE", "?KNM"), ("?KNE",)),
-    "foot": (("?AJC",), ("?ANK", "?ANM"), ("?ANK",)),
+    "foot": (("?AJC",), ("?ANK", "?ANM"), ("?ANK",), ("?HEE", "?MFS"), ("?HEE",)),
     "toes": (("?TOE",), ("?MT1", "?MT5"), ("?MT5",)),
     "shoulder": (("?SJC",), ("?SHO",)),
     "elbow": (("?EJC",), ("?ELB", "?ELM"), ("?ELB",)),
@@ -33,7 +34,7 @@ _SIDED: dict[str, tuple[Recipe, ...]] = {
 }
 _PELVES: tuple[Recipe, ...] = (("LASI", "RASI", "LPSI", "RPSI"), ("LASI", "RASI", "SACR"))
 RECIPES: dict[JointRole, tuple[Recipe, ...]] = {
-    _R.HIPS: (*_PELVES, ("LHJC", "RHJC"), ("LASI", "RASI")),
+    _R.HIPS: (*_PELVES, ("LHJC", "RHJC"), ("LASI", "RASI"), ("LGTR", "RGTR")),
     _R.CHEST: (("STRN", "T10"), ("CLAV", "T10"), ("STRN",), ("T10",)),
     _R.NECK: (("C7", "CLAV"), ("C7",), ("NECK",), ("LSHO", "RSHO"), ("LSJC", "RSJC")),
     _R.HEAD: (
@@ -49,6 +50,9 @@ RECIPES: dict[JointRole, tuple[Recipe, ...]] = {
     },
 }  # fmt: skip
 """The recipes of each role, the best one first."""
+_TROCHANTERS = ("LGTR", "RGTR")
+_INWARD_OF_TROCHANTER = 0.25
+"""The way from a greater trochanter to the hip joint, as a share of the way to the other one."""
 _INWARD, _DOWN, _BACK = 0.14, 0.30, 0.22
 """The distances of a hip joint from the front pelvis marker, as shares of the pelvis width."""
 
@@ -77,6 +81,11 @@ def joint_centers(markers: Mapping[str, FloatArray]) -> dict[JointRole, Center]:
     pelvis = best_recipe(_PELVES, markers.__contains__)
     if pelvis is not None:
         _add_hip_joints(found, markers, pelvis)
+    elif all(place in markers for place in _TROCHANTERS):
+        left, right = (markers[place].astype(np.float64) for place in _TROCHANTERS)
+        inward = _INWARD_OF_TROCHANTER * (right - left)
+        found.setdefault(_R.LEFT_UPPER_LEG, Center(left + inward, _TROCHANTERS))
+        found.setdefault(_R.RIGHT_UPPER_LEG, Center(right - inward, _TROCHANTERS))
     return {role: found[role] for role in JointRole if role in found}
 
 

@@ -4,7 +4,8 @@ These are CMU/MotionBuilder `LeftUpLeg`, ASF `lfemur`, DAZ/Poser `lShldr`, Mixam
 `mixamorig:LeftArm`, Bandai Namco `UpperArm_L`, LAFAN1, SMPL `L_Hip`, Vicon plug-in-gait
 `LKNE`, Rokoko, Xsens, Unreal `upperarm_l`, 3ds Max `Bip01 L Calf`, Blender `thigh.L`,
 OptiTrack `LUArm`, Kinect `KneeLeft`, Rigify `DEF-thigh.L.001`, Auto-Rig Pro `thigh_stretch.l`,
-AdvancedSkeleton `Neck_M`, MakeHuman `upperleg01.L`. Case and separators do not matter.
+AdvancedSkeleton `Neck_M`, MakeHuman `upperleg01.L`, A.R.T. `LUAR`. Case and separators do not
+matter.
 
 The same word names different joints in different conventions. `LeftShoulder` is the collar bone if
 there is also a `LeftArm`, but it is the upper arm if there is also a `LeftCollar`. So the aliases
@@ -24,32 +25,36 @@ from app.motion.roles.joint_roles import JointRole
 Side = Literal["left", "right"]
 
 _MIDDLE: dict[JointRole, tuple[str, ...]] = {
-    JointRole.HIPS: ("hips", "pelvis", "spinebase", "hipcenter", "midhip", "hip"),
+    JointRole.HIPS: ("hips", "pelvis", "spinebase", "hipcenter", "midhip", "hip", "pelv"),
     JointRole.CHEST: (
         "chest", "upperchest", "thorax", "chestlower", "upperback", "spineshoulder",
-        "chest4", "chest3", "chest2", "spine3", "spine2", "spine1",
+        "chest4", "chest3", "chest2", "spine3", "spine2", "spine1", "utsp",
     ),
     JointRole.NECK: ("neck", "necklower", "lowerneck", "neck1", "spineshoulder", "c7"),
     JointRole.HEAD: ("head", "skull", "nose"),
 }  # fmt: skip
 _SIDED: dict[str, tuple[str, ...]] = {
     "upper_leg": (
-        "upleg", "upperleg", "legupper", "thigh", "thighbend", "femur", "hip", "hipjoint",
+        "upleg", "upperleg", "legupper", "thigh", "thighbend", "femur", "hip", "hipjoint", "ule",
     ),
-    "knee": ("knee", "kne", "lowerleg", "leglower", "lowleg", "shin", "calf", "tibia", "leg"),
-    "foot": ("ankle", "ank", "foot"),
+    "knee": (
+        "knee", "kne", "lowerleg", "leglower", "lowleg", "shin", "calf", "tibia", "leg", "lle",
+    ),
+    "foot": ("ankle", "ank", "foot", "foo"),
     "toes": ("toebase", "toes", "toe", "ball", "toetip", "foot"),
     "shoulder": (
-        "upperarm", "armupper", "uparm", "uarm", "shldr", "shldrbend", "humerus", "arm",
+        "upperarm", "armupper", "uparm", "uarm", "shldr", "shldrbend", "humerus", "arm", "uar",
         "shoulder", "sho",
     ),
     "elbow": (
         "elbow", "elb", "forearm", "forearmbend", "lowerarm", "armlower", "lowarm", "farm",
-        "radius",
+        "radius", "lar",
     ),
-    "hand": ("wrist", "wra", "wrb", "hand"),
+    "hand": ("wrist", "wra", "wrb", "hand", "han"),
 }  # fmt: skip
 _ALIASES_WITH_SIDE = frozenset(alias for aliases in _SIDED.values() for alias in aliases)
+_ALIASES_BEFORE_SIDE = _ALIASES_WITH_SIDE - {"ule", "lle", "foo", "uar", "lar", "han"}
+"""Without the words of A.R.T., which follow the side: `LLEL` is the lateral side of an elbow."""
 
 _PREFIX = re.compile(
     r"(mixamorig\d*|bip\d*|valvebiped|cc_base|character\d*|def|org|jnt|joint|bone|bn|sk|b|j|c)"
@@ -181,6 +186,6 @@ def _side_without_separator(word: str) -> tuple[Side | None, str]:
     for mark, side in _SIDES.items():
         if word.startswith(mark) and word.removeprefix(mark) in _ALIASES_WITH_SIDE:
             return side, word.removeprefix(mark)
-        if word.endswith(mark) and word.removesuffix(mark) in _ALIASES_WITH_SIDE:
+        if word.endswith(mark) and word.removesuffix(mark) in _ALIASES_BEFORE_SIDE:
             return side, word.removesuffix(mark)
     return None, word

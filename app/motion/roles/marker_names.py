@@ -21,43 +21,50 @@ _SIDED: dict[str, tuple[str, ...]] = {
     "ASI": ("?ASI", "?ASIS", "?IAS", "?FWT", "WAIST?FRONT", "?WAISTFRONT", "?SIAS"),
     "PSI": ("?PSI", "?PSIS", "?IPS", "?BWT", "WAIST?BACK", "?WAISTBACK", "?SIPS"),
     "HJC": ("?HJC",),
+    "GTR": ("?GTR", "?TRO", "?GTRO", "?TROCH", "?TROCHANTER", "?GT", "?GRT", "?TRC"),
     "KJC": ("?KJC",),
     "KNE": (
         "?KNE", "?KNEE", "?KNEELAT", "?KNEELATERAL", "?LATKNEE", "?KNEEOUT", "?FLE", "?LEK",
         "?LEPI", "?LFC", "?KNEL", "?LE", "?LKNE", "?KNELAT", "?LKNEE", "?KNEELATEPICONDYLE",
-        "?LATFEMEPI",
+        "?LATFEMEPI", "?KL", "?KNEE1", "?KNJNTLN",
     ),
     "KNM": (
         "?KNM", "?MKNE", "?KNEM", "?KNI", "?KNEEMED", "?KNEEMEDIAL", "?MEDKNEE", "?KNEEIN", "?FME",
         "?MEK", "?MEPI", "?MFC", "?ME", "?MKNEE", "?KNEMED", "?KNEEMEDEPICONDYLE", "?MEDFEMEPI",
+        "?KM",
     ),
     "AJC": ("?AJC",),
     "ANK": (
         "?ANK", "?ANKLE", "?ANKLELAT", "?ANKLELATERAL", "?LATANKLE", "?ANKLEOUT", "?FAL", "?LMAL",
-        "?ANKL", "?LM", "?LATMALLEOLUS", "?LMALL", "?LANK", "?LANKLE",
+        "?ANKL", "?LM", "?LATMALLEOLUS", "?LMALL", "?LANK", "?LANKLE", "?AL", "?MALL", "?MALLEOLUS",
+        "?LMA",
     ),
     "ANM": (
         "?ANM", "?MANK", "?ANKM", "?MED", "?ANKLEMED", "?ANKLEMEDIAL", "?MEDANKLE", "?ANKLEIN",
-        "?TAM", "?MMAL", "?MM", "?MEDMALLEOLUS", "?MMALL", "?MANKLE",
+        "?TAM", "?MMAL", "?MM", "?MEDMALLEOLUS", "?MMALL", "?MANKLE", "?AM", "?MMA",
     ),
+    "HEE": ("?HEE", "?HEEL", "?CAL", "?CALC", "?HEELBACK", "?FCC"),
+    "MFS": ("?MIDFOOTSUP",),
     "TOE": (
         "?TOE", "?TOES", "?TOETIP", "?MT2", "?SMH", "?SM", "?FOREFOOT2", "?2MH", "?MTH2", "?TOE2",
     ),
     "MT1": ("?MT1", "?FMH", "?TOEIN", "?FM", "?FOREFOOTIN", "?1MH", "?MTH1"),
-    "MT5": ("?MT5", "?VMH", "?TOEOUT", "?VM", "?FOREFOOTOUT", "?5META", "?5MH", "?MTH5"),
+    "MT5": (
+        "?MT5", "?VMH", "?TOEOUT", "?VM", "?FOREFOOTOUT", "?5META", "?5MH", "?MTH5", "?MET", "?FL",
+    ),
     "SJC": ("?SJC",),
     "SHO": (
         "?SHO", "?SHOULDER", "?ACR", "?ACROMION", "?SAE", "?SHOULDERTOP", "?SHOTOP", "?SHLD", "?SH",
-        "?AC", "?ACROMIO",
+        "?AC", "?ACROMIO", "?ACROMIUM", "?SHOULD",
     ),
     "EJC": ("?EJC",),
     "ELB": (
         "?ELB", "?ELBOW", "?ELBLAT", "?ELBOWLAT", "?ELBOWLATERAL", "?ELBOWOUT", "?HLE", "?EL",
-        "?LELBOW", "?ELBL", "?ARMLATEPICONDYLE", "?LHE", "?ELBLATERAL",
+        "?LELBOW", "?ELBL", "?ARMLATEPICONDYLE", "?LHE", "?ELBLATERAL", "?LEL",
     ),
     "ELM": (
         "?ELM", "?MELB", "?ELBM", "?ELBMED", "?ELBOWMED", "?ELBOWMEDIAL", "?ELBOWIN", "?HME",
-        "?IEL", "?MELBOW", "?ARMMEDEPICONDYLE", "?MHE",
+        "?IEL", "?MELBOW", "?ARMMEDEPICONDYLE", "?MHE", "?MEL",
     ),
     "WJC": ("?WJC",),
     "WRA": (
@@ -138,8 +145,11 @@ _PLACES = {alias: place for place, aliases in _MIDDLE.items() for alias in alias
     for alias in aliases
     for side in "LR"
 }
-_UPPER_ARMS = ("arm", "upperarm", "uparm", "armupper", "humerus")
+_WITHOUT_SIDE = ("HEEL",)
+"""Words that end with the letter of a side and have none."""
+_UPPER_ARMS = ("arm", "upperarm", "uparm", "armupper", "humerus", "uar")
 """Words for a joint at the upper end of the upper arm."""
+_SHOULDERS = ("shoulder", "sho")
 _XSENS = re.compile(r"^p(?=[A-Z])")
 """The letter with which Xsens begins the labels of points on the skin."""
 _UNLABELED = re.compile(r"(|\*\d*|U_?\d+|UNLABELL?ED.*|M\d{3,}|UN-?NAMED.*)", re.IGNORECASE)
@@ -163,7 +173,7 @@ def place_on_body(label: str) -> str | None:
     """The place on the body, for example "LKNE" or "C7"; None if no marker set has the label."""
     key = re.sub(r"[\W_]", "", _XSENS.sub("", label)).upper().removesuffix("STUDY")
     key = re.sub(r"^(LEFT|RIGHT)", lambda side: side.group()[0], key)
-    if key not in _PLACES and key.endswith(("L", "R")):
+    if key not in _PLACES and key.endswith(("L", "R")) and key not in _WITHOUT_SIDE:
         key = key[-1] + key[:-1]
     return _PLACES.get(key)
 
@@ -179,6 +189,6 @@ def markers_by_place(labels: Sequence[str]) -> dict[str, int]:
     found: dict[str, int] = {}
     for marker, (label, (side, word)) in enumerate(zip(labels, keys, strict=True)):
         place = place_on_body(label)
-        if place is not None and not (word == "shoulder" and side in with_arm):
+        if place is not None and not (word in _SHOULDERS and side in with_arm):
             found.setdefault(place, marker)
     return found

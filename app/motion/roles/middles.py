@@ -7,14 +7,11 @@ may also name two joints for a role. The middle becomes a joint of the recording
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
-import numpy as np
-
+from app.motion.roles.added_joints import with_joints
 from app.motion.roles.joint_names import side_and_word
 from app.motion.roles.joint_roles import JointRole
 from app.motion.skeleton.recording import Caution, Recording
-from app.motion.skeleton.skeleton import Skeleton
 
 _R = JointRole
 _MIDDLE_OF: dict[JointRole, tuple[JointRole, JointRole]] = {
@@ -80,32 +77,6 @@ def _names_only_the_nose(names: Sequence[str], found: Mapping[JointRole, int]) -
 def _with_middles(
     recording: Recording, pairs: Mapping[JointRole, Sequence[int]]
 ) -> tuple[Recording, dict[JointRole, int]]:
-    """The recording with one more joint, a root, for each pair, and these joints.
-
-    The rotations of a file have no joint for a middle, so they are left out.
-    """
-    if not pairs:
-        return recording, {}
-    old = recording.skeleton
-    middles = [recording.positions[:, list(pair)].mean(axis=1) for pair in pairs.values()]
-    positions = np.concatenate([recording.positions, np.stack(middles, axis=1)], axis=1)
-    names = [_free_name(role, old.names) for role in pairs]
-    skeleton = Skeleton(
-        names=(*old.names, *names),
-        parents=np.concatenate([old.parents, np.full(len(pairs), -1)]),
-        offsets=np.concatenate([old.offsets, positions[0, len(old) :].astype(np.float64)]),
-        end_parents=old.end_parents,
-        end_offsets=old.end_offsets,
-    )
-    made = replace(
-        recording, skeleton=skeleton, positions=positions, rotations=None, translations=None
-    )
-    return made, {role: len(old) + index for index, role in enumerate(pairs)}
-
-
-def _free_name(role: JointRole, names: Sequence[str]) -> str:
-    """A name that no joint has: "middle of hips"."""
-    name = f"middle_{role.value}"
-    while name in names:
-        name += "_"
-    return name
+    """The recording with a joint in the middle of each pair, and these joints."""
+    tracks = {role: recording.positions[:, list(pair)].mean(axis=1) for role, pair in pairs.items()}
+    return with_joints(recording, tracks, "middle")

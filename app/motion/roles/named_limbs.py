@@ -9,11 +9,13 @@ the one with the most roles is chosen, then the one with the better aliases.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
 from itertools import combinations, pairwise, product
 
 import numpy as np
 
-from app.motion.roles.joint_names import NamedJoint
+from app.motion.roles.joint_names import KEPT_SKELETONS, NamedJoint, joints_by_name
 from app.motion.roles.joint_roles import JointRole
 from app.motion.roles.tree import Tree
 from app.numerics.arrays import FloatArray
@@ -30,27 +32,52 @@ LIMBS: tuple[tuple[JointRole, ...], ...] = (
 _STARTS = (_R.LEFT_UPPER_LEG, _R.RIGHT_UPPER_LEG, _R.LEFT_SHOULDER, _R.RIGHT_SHOULDER)
 MAX_JOINTS_OF_ROLE = 4
 """The most joints of one role and alias that are tried: 256 limbs of four roles."""
+MIN_NUMBERED = 2
+"""The fewest joints of one name in a chain, so that it is the name of the limb: `leg_01`,
+`leg_02`."""
 MIN_STRAIGHTNESS = 0.98
 """The smallest share of the way along the bones of a split thigh that its ends are apart."""
 
 Named = Mapping[JointRole, Sequence[NamedJoint]]
 
 
-def limbs_by_name(named: Named, tree: Tree, positions: FloatArray) -> dict[JointRole, int]:
+@dataclass(frozen=True, slots=True)
+class _Limb:
+    """The best choice for a limb, and the joints that were tried for its first role."""
+
+    best: Mapping[JointRole, NamedJoint]
+    starts: Sequence[NamedJoint]
+
+
+def limbs_by_name(names: Sequence[str], tree: Tree, positions: FloatArray) -> dict[JointRole, int]:
     """The joint of each role of the limbs, neck and head that is found by name.
 
-    named: the joints that each role may have. positions: (frames, joints, 3), some frames. Roles
-    of a limb whose joints cannot be below the others are left out.
+    names: (joints,). positions: (frames, joints, 3), some frames. Roles of a limb whose joints
+    cannot be below the others are left out.
     """
     found: dict[JointRole, int] = {}
-    for limb in LIMBS:
-        found |= _best_limb(limb, named, tree, positions)
+    for limb in _limbs(tuple(names), tuple(tree.parents)):
+        found |= _from_its_start(limb, tree, positions)
     return found
 
 
-def _best_limb(
-    limb: Sequence[JointRole], named: Named, tree: Tree, positions: FloatArray
-) -> dict[JointRole, int]:
+@lru_cache(maxsize=KEPT_SKELETONS)
+def _limbs(names: tuple[str, ...], parents: tuple[int, ...]) -> Sequence[_Limb]:
+    named, tree = joints_by_name(names), Tree(parents)
+    limbs = (_best_limb(limb, named, tree) for limb in LIMBS if not _is_numbered(limb, named, tree))
+    return [limb for limb in limbs if limb is not None]
+
+
+def _is_numbered(limb: Sequence[JointRole], named: Named, tree: Tree) -> bool:
+    """Whether all joints of a limb have one name and a number, so that its shape must decide."""
+    upper = limb[:2]
+    if all(role in named for role in upper):
+        return False
+    joints = {each.joint for role in upper for each in named.get(role, ())}
+    return any(len(joints.intersection(tree.above(joint))) >= MIN_NUMBERED for joint in joints)
+
+
+def _best_limb(limb: Sequence[JointRole], named: Named, tree: Tree) -> _Limb | None:
     """The joints of one limb: the choice with the most roles, then that with the best aliases."""
     roles = [role for role in limb if role in named]
     choices = [_tried(named[role]) for role in roles]
@@ -63,8 +90,8 @@ def _best_limb(
         ]
         if good:
             best = min(good, key=lambda choice: sum(each.rank for each in choice.values()))
-            return _from_its_start(best, dict(zip(roles, choices, strict=True)), tree, positions)
-    return {}
+            return _Limb(best, dict(zip(roles, choices, strict=True))[next(iter(best))])
+    return None
 
 
 def _leaving_out(
@@ -76,17 +103,12 @@ def _leaving_out(
         yield [role for role, _ in kept], [choice for _, choice in kept]
 
 
-def _from_its_start(
-    best: Mapping[JointRole, NamedJoint],
-    choices: Mapping[JointRole, Sequence[NamedJoint]],
-    tree: Tree,
-    positions: FloatArray,
-) -> dict[JointRole, int]:
+def _from_its_start(limb: _Limb, tree: Tree, positions: FloatArray) -> dict[JointRole, int]:
     """The joints of a limb, with the joint at the anatomical hip or shoulder as its start."""
-    found = {role: named.joint for role, named in best.items()}
+    found = {role: named.joint for role, named in limb.best.items()}
     first, *others = found
     if others and first in _STARTS:
-        same = [named.joint for named in choices[first] if named.rank == best[first].rank]
+        same = [named.joint for named in limb.starts if named.rank == limb.best[first].rank]
         found[first] = _start_of_limb(same, found[others[0]], tree, positions)
     return found
 

@@ -14,6 +14,7 @@ from app.motion.roles.named_limbs import limbs_by_name
 from app.motion.roles.topology import MAX_SAMPLED_FRAMES, roles_by_shape
 from app.motion.roles.tree import Tree
 from app.motion.roles.trunk import Trunk
+from app.motion.skeleton.resampling import some_frames
 from app.numerics.arrays import FloatArray, IntArray
 
 _R = JointRole
@@ -36,8 +37,7 @@ def find_roles(
     geometry: no joint gets a role of the other side. No joint gets two roles, except by `given`.
     """
     tree = Tree(parents)
-    frames = np.unique(np.linspace(0, len(positions) - 1, MAX_SAMPLED_FRAMES).astype(int))
-    sampled = np.asarray(positions[frames], dtype=np.float64)
+    sampled = some_frames(positions, MAX_SAMPLED_FRAMES).astype(np.float64)
     sides = [side_and_word(name)[0] for name in names]
     found = dict(given or {})
     _add(found, _by_name(names, tree, sampled))
@@ -53,7 +53,7 @@ def _by_name(names: Sequence[str], tree: Tree, positions: FloatArray) -> dict[Jo
     if not tree.is_tree():
         return roles_by_name(names)
     named = joints_by_name(names)
-    found = limbs_by_name(named, tree, positions)
+    found = limbs_by_name(names, tree, positions)
     for role in (_R.HIPS, _R.CHEST):
         joints = (each.joint for each in named.get(role, ()))
         joint = next((joint for joint in joints if joint not in found.values()), None)

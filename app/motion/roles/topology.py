@@ -16,6 +16,7 @@ from itertools import combinations, pairwise
 import numpy as np
 
 from app.motion.roles.joint_roles import JointRole
+from app.motion.skeleton.resampling import some_frames
 from app.numerics.arrays import FloatArray, IntArray
 
 MAX_SAMPLED_FRAMES = 64
@@ -71,8 +72,7 @@ def roles_by_shape(parents: IntArray, positions: FloatArray) -> dict[JointRole, 
     parents: (joints,) -1 for a root. positions: (frames, joints, 3) in any unit and axes. The
     result is empty if there are no legs. Limbs are left out if their side is unclear.
     """
-    chosen = np.unique(np.linspace(0, len(positions) - 1, MAX_SAMPLED_FRAMES).astype(int))
-    tree = _Tree(parents, np.asarray(positions[chosen], dtype=np.float64))
+    tree = _Tree(parents, some_frames(positions, MAX_SAMPLED_FRAMES).astype(np.float64))
     pairs = sorted(tree.mirrored_pairs(), key=lambda pair: -pair[1].reach())
     if not pairs:
         return {}

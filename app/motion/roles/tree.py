@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from app.motion.roles.joint_roles import JointRole
-from app.numerics.arrays import IntArray
 
 
 class Tree:
     """The parents of joints. parents: (joints,) -1 for a root."""
 
-    def __init__(self, parents: IntArray) -> None:
+    def __init__(self, parents: Iterable[int]) -> None:
         self.parents = [int(parent) for parent in parents]
         self.children: list[list[int]] = [[] for _ in self.parents]
         for joint, parent in enumerate(self.parents):

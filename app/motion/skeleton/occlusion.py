@@ -17,6 +17,10 @@ MAX_GAP = 0.25
 """Seconds. A limb can move away and back within half a second, and a longer gap may hide this."""
 
 
+MIN_SENTINEL = 900.0
+"""The smallest number that stands for a point that was not seen."""
+
+
 @dataclass(frozen=True, slots=True)
 class Gap:
     """The frames start .. end - 1 in which `marker` was not seen."""
@@ -45,7 +49,8 @@ def fill_gaps(positions: FloatArray, frame_rate: float) -> Filled:
     frame_rate: Hz. The input is not changed.
     """
     longest = max(1, round(MAX_GAP * frame_rate))
-    unseen: BoolArray = np.asarray(np.isnan(positions).any(axis=-1))
+    x, y, z = np.moveaxis(positions, -1, 0)
+    unseen: BoolArray = np.asarray(np.isnan(x + y + z))
     filled = positions.copy()
     long_gaps: list[Gap] = []
     count = 0
@@ -59,6 +64,24 @@ def fill_gaps(positions: FloatArray, frame_rate: float) -> Filled:
             filled[short, marker] = _interpolated(positions[:, marker], unseen[:, marker], short)
             count += int(short.sum())
     return Filled(filled, count, tuple(long_gaps))
+
+
+def without_sentinels(positions: FloatArray) -> FloatArray:
+    """The positions with NaN where all three coordinates are one large number, such as 9999.99.
+
+    Programs write such numbers for points that were not seen. No point is there by chance.
+    """
+    x, y, z = np.moveaxis(positions, -1, 0)
+    same = x == y
+    if not same.any():
+        return positions
+    with np.errstate(invalid="ignore"):
+        same &= (x == z) & (np.abs(x) >= MIN_SENTINEL)
+    if not same.any():
+        return positions
+    seen = positions.copy()
+    seen[same] = np.nan
+    return seen
 
 
 def runs(flags: BoolArray) -> list[list[int]]:

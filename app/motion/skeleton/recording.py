@@ -36,6 +36,8 @@ class Recording:
     "z", as declared or as usual in the format. is_up_axis_said: whether the file itself says it, so
     that it is never judged. metres_per_unit: None if the file does not give it. assumed_frame_rate:
     Hz, the usual rate of the format, if the file does not give one and nearly all files agree.
+    start_frame: the frames from the start of the file to the first frame of the recording. It has a
+    fraction if an animation begins between two frames, and is negative if it begins before 0 s.
     """
 
     format: str
@@ -49,3 +51,4 @@ class Recording:
     cautions: tuple[Caution, ...] = ()
     assumed_frame_rate: float | None = None
     is_up_axis_said: bool = False
+    start_frame: float = 0.0

@@ -35,6 +35,11 @@ _ROUNDING = 1e-6
 """Added to a number of samples before it is rounded down, because the division is not exact."""
 
 
+def some_frames(samples: FloatArray, most: int) -> FloatArray:
+    """(n, ...) evenly spaced samples of `samples` (frames, ...), at most `most`, without a copy."""
+    return samples[:: max(1, -(-len(samples) // most))]
+
+
 def resample(samples: FloatArray, from_rate: float, to_rate: float) -> FloatArray:
     """(samples, ...) `samples` (frames, ...) of `from_rate` Hz, at `to_rate` Hz.
 

@@ -148,6 +148,7 @@ def facts(analysis: Analysis) -> ClipFacts:
         ),
         analysis_version=ANALYSIS_VERSION,
         audio_offset=analysis.audio_offset,
+        start_offset=motion.start_offset,
     )
 
 

@@ -140,7 +140,8 @@ class ClipRecord(ClipLabels):
     sha256: of the bytes of the motion file; content_key: unique for each content (sha256, or with
     a skeleton file a hash of both); roles: joint name by role; durations in seconds, rates in Hz;
     error: an RFC 9457 problem; audio_offset: the time of the motion (s) at which the recording
-    begins, as the analysis estimates it; reanalysis: the state of another analysis of a ready
+    begins, as the analysis estimates it; start_offset: seconds from the start of the motion file to
+    the clip's first frame; reanalysis: the state of another analysis of a ready
     clip, None if there is none; is_changed: whether a client has changed the hints or the
     recording since the analysis; changed_version: library version of the last change that
     searches see, 0 if the clip was never ready.
@@ -170,6 +171,7 @@ class ClipRecord(ClipLabels):
     hints: AnalysisHints
     audio: AttachedAudio | None
     audio_offset: float | None
+    start_offset: float | None
     analysis_version: int | None
     reanalysis: Reanalysis | None
     is_changed: bool
@@ -268,6 +270,7 @@ class ClipFacts:
     warnings: tuple[ClipWarning, ...]
     analysis_version: int
     audio_offset: float | None = None
+    start_offset: float = 0.0
 
 
 ClipChanges = Mapping[str, Any]

@@ -67,6 +67,7 @@ clips = Table(
     Column("tempo_override", Float),
     json_column("beats_override"),
     Column("audio_offset", Float),
+    Column("start_offset", Float),
     Column("frames", Integer),
     Column("frame_rate", Float),
     Column("declared_frame_rate", Float),

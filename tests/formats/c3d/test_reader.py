@@ -220,6 +220,7 @@ def test_frames_without_markers_are_removed_at_the_ends() -> None:
     empty = np.full((40, *MARKERS.shape[1:]), np.nan)
     recording = read_c3d(c3d(np.concatenate([empty, MARKERS, empty]), LABELS))
     assert codes(recording) == ["frames_trimmed"]
+    assert recording.start_frame == 40
     assert max(worst_error(canonicalize(recording)).values()) < 0.001
 
 

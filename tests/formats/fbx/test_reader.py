@@ -197,6 +197,7 @@ def test_only_the_span_of_the_stack_is_read() -> None:
     take = Take("t", [curves(SWAY)], span=(1 / 30, 4 / 30))
     recording = read_fbx(fbx(CHAIN, [take], settings={"TimeMode": 6}))
     assert np.allclose(recording.positions, expected(CHAIN)[1:5], atol=1e-3)
+    assert recording.start_frame == pytest.approx(1)
 
 
 def test_axes_without_curves_keep_their_value() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import struct
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -60,6 +61,29 @@ def test_files_of_the_writer_are_read_back(name: str) -> None:
     assert recording.frame_rate == pytest.approx(animation.frame_rate, rel=1e-6)
     assert recording.skeleton.names == animation.skeleton.names
     assert np.abs(recording.positions - animation.positions()).max() < 1e-5
+
+
+@pytest.mark.parametrize("late", [0.0, 2.5])
+def test_the_time_of_the_first_key_is_kept(late: float) -> None:
+    document = Document([dict(node) for node in CHAIN])
+    times, values = TIMES + np.float32(late), turns().astype("<f4")
+    document.animate([(0, "rotation", document.array(times), document.array(values))])
+    recording = read_gltf(document.glb())
+    assert recording.start_frame == pytest.approx(late * 24)
+    assert len(recording.positions) == FRAMES
+
+
+def test_who_flies_lies_in_the_air() -> None:
+    """The specification says that Y is up, so the posture says nothing about it."""
+    animation = a_person()
+    rotations, translations = animation.rotations.copy(), animation.translations.copy()
+    rotations[:, 0] = [np.sqrt(0.5), np.sqrt(0.5), 0, 0]
+    translations[:, 0, 1] += 5
+    flying = replace(animation, rotations=rotations, translations=translations)
+    motion = canonicalize(read_recording(write_glb(flying)))
+    assert motion.cautions == ()
+    head, foot = (motion.positions[:, motion.roles[JointRole(r)]] for r in ("head", "left_foot"))
+    assert np.abs((head - foot)[:, 1]).mean() < 0.5
 
 
 def test_a_person_keeps_roles_and_rotations() -> None:

@@ -174,6 +174,8 @@ def test_a_person_who_is_not_seen_in_some_frames() -> None:
         {"frames": [{"keypoints": [[1.5, 2.5]] * 17}]},
         {"annotations": [{"keypoints": [320, 240, 2] * 17, "id": 1}]},
         [{"instances": [{"keypoints": [[3, 4]] * 17}]}],
+        [{"image_id": "1.jpg", "keypoints": [320.5, 240.5, 0.9, 300.5, 140.5, 0.7] * 9}],
+        [{"landmarks": [{"x": 0.5, "y": 0.25, "z": -0.3}, {"x": 0.4, "y": 0.5, "z": 0.1}] * 9}],
     ],
 )
 def test_2d_keypoints_are_refused(document: Any) -> None:

@@ -174,6 +174,15 @@ def test_joints_hidden_for_a_short_time_are_filled_in() -> None:
     assert np.isfinite(read_recording(npy(positions)).positions).all()
 
 
+@pytest.mark.parametrize("sentinel", [9999.99, -9999.0, 1e6])
+def test_large_equal_numbers_stand_for_hidden_joints(sentinel: float) -> None:
+    positions = PERSON.positions.copy()
+    positions[7:9, 3] = sentinel
+    recording = read_recording(npz(**ARRAYS | {"positions": positions}))
+    assert [c.code for c in recording.cautions] == ["gaps_filled"]
+    assert np.abs(recording.positions - PERSON.positions).max() < 0.01
+
+
 def test_joints_hidden_for_a_long_time_are_named() -> None:
     positions = PERSON.positions.copy()
     positions[2:-1, 3] = np.nan
@@ -182,6 +191,18 @@ def test_joints_hidden_for_a_long_time_are_named() -> None:
     assert str(len(positions) - 3) in message
     with pytest.raises(Unreadable, match="hidden for too long"):
         read_recording(npy(np.full_like(positions, np.nan)))
+
+
+@pytest.mark.parametrize(("first", "last"), [(0, 20), (20, 40)])
+def test_the_longest_stretch_without_hidden_joints_is_read(first: int, last: int) -> None:
+    positions = PERSON.positions.copy()
+    positions[first:last, 3] = np.nan
+    recording = read_recording(npz(**ARRAYS | {"positions": positions}))
+    start = last if first == 0 else 0
+    assert [c.code for c in recording.cautions] == ["frames_trimmed"]
+    assert f"frames {start} to {start + 19}" in recording.cautions[0].detail
+    assert recording.start_frame == start
+    assert np.array_equal(recording.positions, PERSON.positions[start : start + 20])
 
 
 @pytest.mark.parametrize("key", ["arr_0", "posed_joints", "points"])
@@ -258,7 +279,8 @@ def test_a_written_file_is_read_back(
 ) -> None:
     names, parents = skeleton
     shape = (frames, len(names), 3)
-    numbers = st.floats(-1e6, 1e6, width=32)
+    # Larger numbers may stand for joints that were not seen.
+    numbers = st.floats(-800, 800, width=32)
     positions = data.draw(hnp.arrays(np.float32, shape, elements=numbers))
     rate = data.draw(st.floats(0.1, 2000.0))
     content = write_npz(names, np.array(parents), positions, rate)

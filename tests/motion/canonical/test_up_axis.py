@@ -89,6 +89,29 @@ def test_a_walk_shows_what_is_up_against_the_rest_pose(axis: str, at: float) -> 
     assert codes(motion) == ["up_axis_guessed"] * (axis != "y")
 
 
+@pytest.mark.parametrize("axis", ["z", "-x"])
+def test_a_walker_who_bends_down_at_times_is_turned(axis: str) -> None:
+    walk = walking()
+    positions = walk.positions.copy()
+    upper = [ROLES.index(role) for role in (R.CHEST, R.NECK, R.HEAD)]
+    hips = positions[:30, [ROLES.index(R.HIPS)]]
+    positions[:30, upper] = hips + to_y_up(positions[:30, upper] - hips, "-z")
+    seen, cautions = judge_up_axis(turned(axis, positions), None, EXPECTED, "y")
+    assert seen == axis
+    assert [caution.code for caution in cautions] == ["up_axis_guessed"]
+
+
+@pytest.mark.parametrize("axis", ["y", "-x"])
+def test_legs_alone_stand(axis: str) -> None:
+    """Gait laboratories record lower bodies, often with Y up where Z is usual."""
+    legs = {r: j for r, j in EXPECTED.items() if "leg" in r or "knee" in r or "foot" in r}
+    lower = legs | {R.HIPS: EXPECTED[R.HIPS]}
+    seen, cautions = judge_up_axis(turned(axis), None, lower, "z")
+    assert seen == axis
+    assert [caution.code for caution in cautions] == ["up_axis_guessed"]
+    assert judge_up_axis(turned("z"), None, lower, "z") == ("z", ())
+
+
 def test_a_standing_body_half_below_the_floor_is_turned() -> None:
     """Positions in the axes of a camera have Y down, and their origin anywhere."""
     camera = STANDING * np.array([1, -1, -1], dtype=np.float32) + np.array([0.2, 1.0, 4.0])

@@ -26,6 +26,17 @@ def test_centers_are_turned_moved_and_scaled_with_the_markers() -> None:
         assert np.allclose(after[role].positions, 2 * rotate(turn, center.positions) + [1, 2, 3])
 
 
+def test_trochanters_give_the_hips_without_a_pelvis() -> None:
+    tracks = {"LGTR": np.array([[0.2, 1.0, 0.0]]), "RGTR": np.array([[-0.2, 1.0, 0.0]])}
+    centers = joint_centers(tracks)
+    found = {role: center.positions[0].tolist() for role, center in centers.items()}
+    assert found == {
+        JointRole.HIPS: [0.0, 1.0, 0.0],
+        JointRole.LEFT_UPPER_LEG: [0.1, 1.0, 0.0],
+        JointRole.RIGHT_UPPER_LEG: [-0.1, 1.0, 0.0],
+    }
+
+
 def test_a_mirrored_person_has_mirrored_joints() -> None:
     def other(place: str) -> str:
         return {"L": "R", "R": "L"}.get(place[0], place[0]) + place[1:]

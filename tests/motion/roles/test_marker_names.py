@@ -20,6 +20,11 @@ from app.motion.roles.marker_names import (
         ("V.Sacral", "SACR"), ("RTAM", "RANM"), ("WaistLFront", "LASI"), ("WaistRBack", "RPSI"),
         ("LKneeOut", "LKNE"), ("RShoulderTop", "RSHO"), ("C7", "C7"), ("CV7", "C7"),
         ("Top.Head", "TOPHD"), ("LFHD", "LFHD"), ("RIEL", "RELM"), ("LHJC", "LHJC"),
+        ("r mall", "RANK"), ("l met", "LMT5"), ("r should", "RSHO"), ("l knee 1", "LKNE"),
+        ("RKM", "RKNM"), ("LAL", "LANK"), ("RAM", "RANM"), ("L.Acromium", "LSHO"),
+        ("RLMA", "RANK"), ("LMMA", "LANM"), ("r_knjntln", "RKNE"), ("LTRO", "LGTR"),
+        ("LLEL", "LELB"), ("RMEL", "RELM"), ("L.Heel", "LHEE"),
+        ("RCAL", "RHEE"), ("L.Midfoot.Sup", "LMFS"),
         ("LTHI", None), ("", None), ("L", None), ("LEFT", None), ("\N{KELVIN SIGN}", None),
     ],
 )  # fmt: skip
@@ -38,6 +43,10 @@ def test_labels_that_are_not_markers() -> None:
         assert not is_marker(label), label
     for label in ("LKNE", "C7", "M1", "Ulna", "Forehead"):
         assert is_marker(label), label
+
+
+def test_a_shoulder_beside_an_upper_arm_is_a_collar_bone() -> None:
+    assert markers_by_place(["LSHO", "LUAR", "RSHO"]) == {"RSHO": 2}
 
 
 def test_the_first_marker_of_a_place_is_used() -> None:

@@ -152,6 +152,25 @@ def test_rigs_with_endings_of_their_own_have_their_joints(arm: str, leg: str, mi
     check(bones, expected | {"hips": names[0], "neck": names[3], "head": names[4]})
 
 
+@pytest.mark.parametrize(
+    ("arm", "leg"),
+    [
+        ("arm_01_{} arm_02_{} arm_03_{} arm_04_{}", "leg_01_{} leg_02_{} leg_03_{} leg_04_{}"),
+        ("clavicle_{} arm_{}0_0 arm_{}0_1 arm_{}0_end", "leg_{}0_0 leg_{}0_1 leg_{}0_end foot_{}0"),
+    ],
+)
+def test_joints_of_a_limb_that_only_have_numbers_are_found_by_the_shape(arm: str, leg: str) -> None:
+    bones = {
+        **chain("Root Spine Chest Neck Head", None, (0, 0.95, 0), UP, (0, 0.3, 0), UP, UP),
+        **pair(arm, "Chest", (0.03, 0.05, 0), (0.15, 0, 0), (0.29, 0, 0), (0.25, 0, 0)),
+        **pair(leg, "Root", (0.1, -0.05, 0), (0, -0.42, 0), (0, -0.42, -0.01), (0, -0.05, 0.14)),
+    }
+    parts = ("upper_leg", "knee", "foot"), ("shoulder", "elbow", "hand")
+    joints = leg.split()[:3], arm.split()[1:]
+    for names, limb in zip(joints, parts, strict=True):
+        check(bones, {f"{{}}_{part}": name for part, name in zip(limb, names, strict=True)})
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_no_joint_has_a_role_of_the_other_side(seed: int) -> None:
     """The words of limbs are unknown, and the body is mirrored, so that the shape contradicts."""

@@ -101,6 +101,7 @@ def test_a_ready_clip_has_the_facts_of_its_analysis(add_clip: AddClip) -> None:
     assert clip.warnings == found.warnings
     assert clip.missing_roles == found.missing_roles
     assert (clip.frames, clip.duration, clip.joints, clip.format) == (90, 3.0, 22, "bvh")
+    assert clip.start_offset == 1.25
 
 
 def test_patch_changes_only_the_given_fields(store: Store, add_clip: AddClip) -> None:

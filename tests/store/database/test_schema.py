@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import multiprocessing
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -78,7 +79,8 @@ def test_an_upgrade_keeps_the_data(store: Store, add_clip: AddClip, database_url
     assert schema.state(database_url).current == "0001"
     assert schema.upgrade(database_url).is_current
     with store.read() as tx:
-        assert clips.get(tx, clip.id) == clip
+        # Earlier versions do not know when a clip begins in its file.
+        assert clips.get(tx, clip.id) == replace(clip, start_offset=None)
 
 
 def test_an_upgrade_makes_large_results_small_and_keeps_every_file(

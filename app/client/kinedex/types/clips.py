@@ -21,6 +21,9 @@ class Clip(Record):
     frame_rate: Frames per second, as used.
     declared_frame_rate: Frames per second, as the file says.
     duration: Seconds.
+    start_offset: Seconds from the start of the file to the clip's first frame. Add them to a
+    time of the clip to find it in your own program. It is 0 unless frames at the start have no
+    body, or the animation begins later; negative if the animation begins before 0 s.
     joints: Number of joints.
     roles: Joint name by joint role.
     has_audio: Whether the clip has a recording: GET .../audio.
@@ -49,6 +52,7 @@ class Clip(Record):
     frame_rate: float | None
     declared_frame_rate: float | None
     duration: float | None
+    start_offset: float | None
     joints: int | None
     roles: dict[str, str]
     missing_roles: list[str]
