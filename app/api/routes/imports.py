@@ -29,7 +29,7 @@ the form. A manifest may be in any folder; its paths are relative to that folder
 - `fps` (or `frame_rate`), `unit` and `up_axis` say what a file does not say, or says wrongly.
 - `audio` is the path of a recording (WAV, FLAC, OGG or MP3), and `audio_offset` the time in the
   motion at which it begins, in seconds. `tempo` and `beats` replace the beats of the recording.
-  `keyposes` are their times in seconds; Kinedex learns its thresholds from them.
+  `keyposes` are the times of keyposes in seconds; Kinedex learns its thresholds from them.
 - Any other column becomes metadata: strings, numbers, `true` or `false`. A column that is almost a
   field (`tsak`) is an error that names the field; `meta.tsak` is metadata in any case.
 

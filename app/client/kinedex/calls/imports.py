@@ -32,7 +32,8 @@ def start_import(
     wrongly.
     - `audio` is the path of a recording (WAV, FLAC, OGG or MP3), and `audio_offset` the time in
     the motion at which it begins, in seconds. `tempo` and `beats` replace the beats of the
-    recording. `keyposes` are their times in seconds; Kinedex learns its thresholds from them.
+    recording. `keyposes` are the times of keyposes in seconds; Kinedex learns its thresholds
+    from them.
     - Any other column becomes metadata: strings, numbers, `true` or `false`. A column that is
     almost a field (`tsak`) is an error that names the field; `meta.tsak` is metadata in any
     case.
