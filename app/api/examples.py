@@ -23,7 +23,7 @@ def example_values(library: Library | None) -> dict[str, str]:
     with library.store.read() as tx:
         if not is_open(library, tx):
             return {}
-        found = {**_of_clips(tx), **_of_others(tx)}
+        found = {**_of_clips(tx), **_of_others(tx), "API_KEY": ""}
     return {placeholder: value for placeholder, value in found.items() if value is not None}
 
 

@@ -58,6 +58,8 @@ _EXAMPLES: dict[int, KinedexError] = {
     507: errors.DiskFull(),
 }
 """A failure of each status, as the example of the problem."""
+BINARY = {"schema": {"type": "string", "format": "binary"}}
+"""Bytes as the content of an answer. Of an answer without a schema, generated clients lose them."""
 _EVERYWHERE = (401, 403, 422, 500, 503)
 _WITH_A_BODY = (408, 413)
 """Statuses of every call that has a body. A route with a body lists 413."""
@@ -222,7 +224,19 @@ def _build(app: FastAPI, bodies: Sequence[type[BaseModel]]) -> dict[str, Any]:
     schemas = description.setdefault("components", {}).setdefault("schemas", {})
     schemas.update(extra.get("$defs", {}))
     _add_idempotency_keys(description["paths"])
+    _describe_events_as_text(description["paths"])
     return description
+
+
+def _describe_events_as_text(paths: dict[str, Any]) -> None:
+    """FastAPI describes events by `itemSchema` of OpenAPI 3.2; openapi-generator refuses it."""
+    for item in paths.values():
+        for operation in item.values():
+            for response in operation["responses"].values():
+                events = response.get("content", {}).get("text/event-stream")
+                if events is not None:
+                    events.clear()
+                    events["schema"] = {"type": "string"}
 
 
 def _add_idempotency_keys(paths: dict[str, Any]) -> None:

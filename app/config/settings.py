@@ -1,6 +1,6 @@
 """The settings of an installation: flags, then `KINEDEX_*`, then a TOML file, then defaults.
 
-`app.config.table` documents all of them; a test compares the README with it.
+`app.config.table` documents all of them; a test compares `docker/README.md` with it.
 Secrets are `SecretStr`, so that neither a log line nor a traceback shows them.
 """
 

@@ -86,6 +86,16 @@ def test_the_description_is_complete(idle: httpx2.Client) -> None:
         assert reference.rsplit("/", 1)[1] in description["components"]["schemas"]
 
 
+def test_every_content_has_a_schema_and_no_member_of_later_versions(idle: httpx2.Client) -> None:
+    """Generated clients lose an answer without a schema; openapi-generator refuses `itemSchema`."""
+    for path, item in idle.get("/openapi.json").json()["paths"].items():
+        for operation in item.values():
+            for answer in operation["responses"].values():
+                for content in answer.get("content", {}).values():
+                    assert content["schema"], path
+                    assert content.keys() <= {"schema", "example", "examples"}, path
+
+
 def test_a_call_with_two_bodies_has_an_optional_parameter(idle: httpx2.Client) -> None:
     """Otherwise openapi-python-client 0.29.1 does not import `Unset` into the call's module.
 

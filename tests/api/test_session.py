@@ -137,6 +137,16 @@ def test_where_no_key_is_asked_for_nobody_signs_in(idle_service: Live) -> None:
         assert client.get("/v1/clips").status_code == 200
 
 
+def test_an_empty_key_is_enough_where_no_keys_are_needed(
+    idle_service: Live, page: httpx2.Client
+) -> None:
+    with idle_service.client(headers={"Origin": idle_service.url}) as client:
+        answer = _sign_in(client, "")
+        assert answer.json() == {"keys_needed": False, "role": None}
+        assert "set-cookie" not in answer.headers
+    assert_problem(_sign_in(page, ""), 401, "unauthorized")
+
+
 def test_sessions_end_after_a_time_without_a_call() -> None:
     now = 0.0
     kept = Sessions(clock=lambda: now)

@@ -8,7 +8,7 @@ from fastapi import APIRouter, Query, Request, Response
 
 from app.api.deps import Lib, reads
 from app.api.guard.admission import heavy
-from app.api.openapi import ClipId, refusals
+from app.api.openapi import BINARY, ClipId, refusals
 from app.api.schemas.views import Descriptor, Motion, MotionQueryParameters
 from app.api.streams import OCTETS, as_json, as_octets, prefers_octets
 from app.api.validators import UNCHANGED, of_one_clip
@@ -16,13 +16,12 @@ from app.services.views import views
 
 router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads])
 
-_OCTETS = {"schema": {"type": "string", "format": "binary"}}
 _SHAPE = {
     "description": "`frames,joints,3`, with octet streams.",
     "schema": {"type": "string"},
     "required": False,
 }
-OCTET_ANSWER = {"content": {OCTETS: _OCTETS}, "headers": {"X-Shape": _SHAPE}}
+OCTET_ANSWER = {"content": {OCTETS: BINARY}, "headers": {"X-Shape": _SHAPE}}
 
 
 @router.get(
@@ -60,7 +59,7 @@ def get_descriptor(lib: Lib, clip_id: ClipId) -> Descriptor:
     responses={
         200: {
             "description": "A few stick figures over time.",
-            "content": {"image/svg+xml": {"schema": {"type": "string"}}},
+            "content": {"image/svg+xml": BINARY},
         },
         304: UNCHANGED,
         **refusals(404, 409),

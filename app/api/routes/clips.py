@@ -13,7 +13,7 @@ from starlette.datastructures import UploadFile
 from app.api.bodies import read_form, require_json, required
 from app.api.deps import Lib, reads, writes
 from app.api.guard.admission import changes, quick
-from app.api.openapi import AudioClipId, ClipId, body, refusals
+from app.api.openapi import BINARY, AudioClipId, ClipId, body, refusals
 from app.api.queries import file_of
 from app.api.schemas.clips import Clip, ClipCreated, ClipForm, ClipList, ClipPatch, ClipQuery
 from app.api.sparse import ChosenFields, sparse_item, sparse_page
@@ -31,6 +31,10 @@ FILES = {
     " Nexus, TSV of Qualisys, or JSON of 3-D keypoints.",
     "skeleton": "The ASF file that an AMC file needs.",
     "audio": "The recording that goes with the motion: WAV, FLAC, OGG or MP3.",
+}
+_ORIGINAL = {
+    "content": {"application/octet-stream": BINARY},
+    "description": "The original bytes.",
 }
 
 
@@ -131,7 +135,7 @@ def delete_clip(lib: Lib, clip_id: ClipId) -> None:
     dependencies=[reads, quick],
     response_class=FileResponse,
     responses={
-        200: {"content": {"application/octet-stream": {}}, "description": "The original bytes."},
+        200: _ORIGINAL,
         304: UNCHANGED,
         **refusals(404),
     },
@@ -146,7 +150,7 @@ def get_file(lib: Lib, request: Request, clip_id: ClipId) -> FileResponse:
     dependencies=[reads, quick],
     response_class=FileResponse,
     responses={
-        200: {"content": {"application/octet-stream": {}}, "description": "The original bytes."},
+        200: _ORIGINAL,
         304: UNCHANGED,
         **refusals(404),
     },

@@ -12,7 +12,7 @@ from app.analysis.angles import definitions as angles
 from app.analysis.gait import parameters as gait
 from app.api.deps import Lib, reads
 from app.api.guard.admission import heavy
-from app.api.openapi import ClipId, refusals
+from app.api.openapi import BINARY, ClipId, refusals
 from app.api.pieces import Pieces
 from app.api.schemas.export import ExportQuery
 from app.api.validators import UNCHANGED, of_one_clip
@@ -116,10 +116,7 @@ run, times that need the foot off are empty: the method does not find it there.
     responses={
         200: {
             "description": "The file, as an attachment.",
-            "content": {
-                kind: {"schema": {"type": "string", "format": "binary"}}
-                for kind in MEDIA_TYPES.values()
-            },
+            "content": dict.fromkeys(MEDIA_TYPES.values(), BINARY),
         },
         304: UNCHANGED,
         **refusals(404, 409),

@@ -116,7 +116,10 @@ def list_folders(lib: Lib, query: Annotated[FolderQuery, Query()]) -> FolderList
     dependencies=[quick],
     response_class=StreamingResponse,
     responses={
-        200: {"content": {"text/csv": {}}, "description": "A table with a row for each clip."}
+        200: {
+            "content": {"text/csv": {"schema": {"type": "string"}}},
+            "description": "A table with a row for each clip.",
+        }
     },
 )
 def get_manifest(lib: Lib, query: Annotated[Filter, Query()]) -> StreamingResponse:

@@ -8,7 +8,7 @@ from fastapi import APIRouter, Query, Request, Response
 
 from app.api.deps import Lib, reads
 from app.api.guard.admission import heavy
-from app.api.openapi import ClipId, refusals
+from app.api.openapi import BINARY, ClipId, refusals
 from app.api.routes.clip_views import OCTET_ANSWER
 from app.api.schemas.low_dimensional import (
     AnimationQuery,
@@ -42,7 +42,7 @@ elbow folded by more than 160 degrees (`folded`), a knee bent forward by 10 or a
 """
 SVG_ANSWER = {
     "description": "An animated picture (SMIL, no script).",
-    "content": {"image/svg+xml": {"schema": {"type": "string"}}},
+    "content": {"image/svg+xml": BINARY},
 }
 
 

@@ -25,10 +25,14 @@ async def get_session(request: Request) -> Session:
 @router.post("", dependencies=[Depends(require_json), quick], responses=refusals(400, 413, 415))
 def sign_in(request: Request, lib: Lib, sent: SignIn, response: Response) -> Session:
     """Sign in: the answer sets a cookie that stands for the key until it is signed out, the
-    service restarts, or 12 hours pass without a call. Only pages of this service can use it."""
+    service restarts, or 12 hours pass without a call. Only pages of this service can use it.
+
+    Where no keys are needed, send an empty key: the answer is that of `GET`."""
     refuse_other_pages(request.scope)
     caller = find_caller(lib, sent.key)
     caller.require_key()
+    if caller.is_free:
+        return _session(caller)
     sessions: Sessions = request.app.state.sessions
     response.set_cookie(
         COOKIE,

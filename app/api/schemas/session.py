@@ -11,7 +11,7 @@ from app.store.key_role import KeyRole
 class SignIn(Incoming):
     """The key to sign in with."""
 
-    key: str = Field(min_length=1, max_length=200, description="An API key.")
+    key: str = Field(max_length=200, description="An API key.", examples=["API_KEY"])
 
 
 class Session(Outgoing):

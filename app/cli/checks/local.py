@@ -30,7 +30,7 @@ EXTRAS = {
 }
 """By extra: the module that it installs, and what needs it."""
 REPAIR = (
-    "Stop all processes of Kinedex, and restore a backup (see Backup in the README); "
+    "Stop all processes of Kinedex, and restore a backup (see Back up in the README); "
     "`kinedex verify` lists all damage."
 )
 

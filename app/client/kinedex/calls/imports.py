@@ -25,11 +25,35 @@ def start_import(
     overwrite: bool | None = None,
     progress: Progress | None = None,
 ) -> Call[JobStarted]:
-    """Store every motion file of a ZIP.
+    """Store every motion file of a ZIP, and the recordings that belong to them.
 
-    A file that the library has already gets the labels that come now, except those that somebody
-    edited since. `job.result` counts the outcomes. `GET /v1/jobs/{id}/files` lists the outcome
-    of each file.
+    Labels come from a row of `manifest.csv`, else from the pattern `labels`, else from the
+    fields of the form. A manifest may be in any folder; its paths are relative to that folder.
+    Its columns:
+
+    - `path` is the only column that is needed. `name`, `person`, `task`, `license` and `source`
+    are labels. `words` are separated by spaces, and a phrase has underscores (`left_leg`).
+    - `fps` (or `frame_rate`), `unit` and `up_axis` say what a file does not say, or says
+    wrongly.
+    - `audio` is the path of a recording (WAV, FLAC, OGG or MP3), and `audio_offset` the time in
+    the motion at which it begins, in seconds. `tempo` and `beats` replace the beats of the
+    recording. `keyposes` are the times of keyposes in seconds; Kinedex learns its thresholds
+    from them.
+    - Any other column becomes metadata: strings, numbers, `true` or `false`. A column that is
+    almost a field (`tsak`) is an error that names the field; `meta.tsak` is metadata in any
+    case.
+
+    Correct the manifest and import again: new values replace the old ones. If somebody edited a
+    value since, it stays, and the file is `conflicting` with both values; `overwrite` replaces
+    it. Files that are no motions, like `notes.txt`, are skipped.
+
+    `job.result` counts the files by outcome and lists the first 100, failed files first. `GET
+    /v1/jobs/{id}/files?outcome=failed` lists all of them. Imports take turns: a small import
+    does not wait for a large one. Meanwhile the job of the large one is `queued` again.
+
+    The manifests of one import have at most as many rows as an archive may have files
+    (`KINEDEX_MAX_ARCHIVE_ENTRIES`), 64 MiB, 100 columns, and 131,072 characters in a field. Over
+    a limit the import fails at once and names the line.
 
     archive: A ZIP of motion files; it may hold `manifest.csv`.
     person: For all files whose rows in a manifest and whose paths give none.

@@ -22,6 +22,8 @@ def sign_in(key: str) -> Call[Session]:
     """Sign in: the answer sets a cookie that stands for the key until it is signed out, the service
     restarts, or 12 hours pass without a call. Only pages of this service can use it.
 
+    Where no keys are needed, send an empty key: the answer is that of `GET`.
+
     key: An API key.
     """
     from kinedex.types.session import Session
