@@ -23,6 +23,12 @@ export const PAGES: readonly PageEntry[] = [
     icon: "search",
     load: () => import("./search/Search.svelte"),
   },
+  {
+    name: "map",
+    label: "Map",
+    icon: "map",
+    load: () => import("./map/MapPage.svelte"),
+  },
 ];
 
 /** Pages that the navigation does not list. */
