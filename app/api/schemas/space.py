@@ -86,7 +86,7 @@ class SpaceMap(Outgoing):
                     words=list(clip.words),
                     license=clip.license,
                     source=clip.source,
-                    metadata=clip.metadata,
+                    metadata=dict(clip.metadata),
                     duration=clip.duration,
                     point=point,
                 )
