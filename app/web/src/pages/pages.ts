@@ -29,6 +29,12 @@ export const PAGES: readonly PageEntry[] = [
     icon: "map",
     load: () => import("./map/MapPage.svelte"),
   },
+  {
+    name: "todo",
+    label: "To do",
+    icon: "todo",
+    load: () => import("./todo/Todo.svelte"),
+  },
 ];
 
 /** Pages that the navigation does not list. */
