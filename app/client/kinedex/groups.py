@@ -85,6 +85,9 @@ class Models(Group[SenderType]):
 
     list = CallMethod(calls_models.list_models)
     update = CallMethod(calls_models.update_model)
+    confusion = CallMethod(calls_models.get_confusion)
+    list_confused_clips = CallMethod(calls_models.list_confused_clips)
+    list_signatures = CallMethod(calls_models.list_signatures)
     fit = CallMethod(calls_models.request_fit)
 
 
