@@ -15,10 +15,14 @@ DIMENSIONS = 2
 
 def signature_points(lib: Library) -> tuple[Sequence[str], FloatArray, float]:
     """The persons, their signatures (persons, 2) along their principal axes, and the share of
-    their variance that these axes keep. Raises ModelNotFitted.
+    their variance that these axes keep.
+
+    Each parameter counts by how much it changes motions, its singular value: without that, all
+    signatures are equally far apart. Raises ModelNotFitted.
     """
     model = lib.models.multilinear(lib.store).model
-    signatures = model.svd.factors[0]
+    core, people = model.svd.core, model.svd.factors[0]
+    signatures = people * np.linalg.norm(core.reshape(len(core), -1), axis=1)
     axes = principal_axes(signatures, DIMENSIONS)
     points = axes.project(signatures)
     whole = float(np.square(signatures - axes.center).sum())

@@ -35,11 +35,18 @@ export const PAGES: readonly PageEntry[] = [
     icon: "todo",
     load: () => import("./todo/Todo.svelte"),
   },
+  {
+    name: "models",
+    label: "People",
+    icon: "people",
+    load: () => import("./models/Models.svelte"),
+  },
 ];
 
 /** Pages that the navigation does not list. */
 export const OTHER_PAGES: readonly Pick<PageEntry, "name" | "load">[] = [
   { name: "clips", load: () => import("./clip/ClipPage.svelte") },
+  { name: "study", load: () => import("./study/Study.svelte") },
 ];
 
 /** The page of the first part of a path; undefined where there is none. */

@@ -4,13 +4,13 @@
  * is read.
  */
 import { api, ask, type Schemas } from "$/api/client";
+import { followed, type Job } from "$/api/jobs";
 import { problemOf } from "$/api/problem";
 import { server } from "$/api/server.svelte";
 import { root } from "$/core/root";
 import type { Found } from "./collect";
 
 export type JobFile = Schemas["JobFile"];
-type Job = Schemas["Job"];
 
 const MAX_LISTED = 1000;
 
@@ -42,7 +42,7 @@ export class Upload {
       this.job = await sent(archive, (share) => (this.progress = share));
       this.phase = "analyzing";
       this.progress = 0;
-      this.job = await this.#followed(this.job.id);
+      this.job = await followed(this.job.id, (job) => this.#show(job));
       await this.#list(this.job.id);
       this.failure = this.job.error ? problemOf(this.job.error, 0) : undefined;
       this.phase = this.job.state === "succeeded" ? "done" : "failed";
@@ -53,25 +53,11 @@ export class Upload {
     this.#onchange();
   }
 
-  /** The job when it has ended; meanwhile its progress and its files are shown. */
-  #followed(id: string): Promise<Job> {
-    const events = new EventSource(`${root}/v1/jobs/${id}/events`);
-    return new Promise((ended) => {
-      events.addEventListener("progress", (event) => {
-        const job = JSON.parse(event.data as string) as Job;
-        this.job = job;
-        this.progress = job.progress;
-        void this.#list(id);
-        this.#onchange();
-      });
-      events.addEventListener("done", (event) => {
-        events.close();
-        ended(JSON.parse(event.data as string) as Job);
-      });
-      // The browser opens the stream again by itself; meanwhile we look for the service.
-      events.addEventListener("error", () => server.lost());
-      events.addEventListener("open", () => server.found());
-    });
+  #show(job: Job): void {
+    this.job = job;
+    this.progress = job.progress;
+    void this.#list(job.id);
+    this.#onchange();
   }
 
   async #list(id: string): Promise<void> {
