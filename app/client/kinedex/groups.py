@@ -55,6 +55,7 @@ class Clips(Group[SenderType]):
     animation = CallMethod(calls_low_dimensional.get_animation)
     export = CallMethod(calls_export.get_export)
     upload_archive = CallMethod(calls_imports.start_import)
+    start_demo_import = CallMethod(calls_imports.start_demo_import)
     symbol_motion = CallMethod(calls_symbols.get_symbol_motion)
     symbol_motion_array = CallMethod(calls_symbols.get_symbol_motion_array)
     suggest_words = CallMethod(calls_suggestions.suggest_words)

@@ -41,6 +41,18 @@ export const PAGES: readonly PageEntry[] = [
     icon: "people",
     load: () => import("./models/Models.svelte"),
   },
+  {
+    name: "make",
+    label: "Make",
+    icon: "make",
+    load: () => import("./make/Make.svelte"),
+  },
+  {
+    name: "live",
+    label: "Live",
+    icon: "live",
+    load: () => import("./live/Live.svelte"),
+  },
 ];
 
 /** Pages that the navigation does not list. */

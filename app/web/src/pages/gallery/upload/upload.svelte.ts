@@ -16,7 +16,6 @@ const MAX_LISTED = 1000;
 
 export class Upload {
   readonly name: string;
-  readonly count: number;
   phase: "packing" | "sending" | "analyzing" | "done" | "failed" = $state("packing");
   /** Share of the phase that is done, 0 to 1. */
   progress = $state(0);
@@ -27,19 +26,34 @@ export class Upload {
   #isListing = false;
   readonly #onchange: () => void;
 
-  /** onchange: called when clips have come or changed. */
-  constructor(found: readonly Found[], onchange: () => void) {
-    this.count = found.length;
-    this.name = found.length === 1 && found[0] ? found[0].file.name : `${found.length} files`;
+  /** start: begins the import. onchange: called when clips have come or changed. */
+  private constructor(name: string, start: (upload: Upload) => Promise<Job>, onchange: () => void) {
+    this.name = name;
     this.#onchange = onchange;
-    void this.#run(found);
+    void this.#run(start);
   }
 
-  async #run(found: readonly Found[]): Promise<void> {
+  /** Files that somebody has chosen or dropped. */
+  static of(found: readonly Found[], onchange: () => void): Upload {
+    const only = found.length === 1 ? found[0]?.file.name : undefined;
+    return new Upload(only ?? `${found.length} files`, (upload) => upload.#send(found), onchange);
+  }
+
+  /** The demo library, which the service makes itself. */
+  static demo(onchange: () => void): Upload {
+    const start = async (): Promise<Job> => (await ask(api.POST("/v1/imports/demo"))).job;
+    return new Upload("Demo library", start, onchange);
+  }
+
+  async #send(found: readonly Found[]): Promise<Job> {
+    const archive = await packed(found);
+    this.phase = "sending";
+    return sent(archive, (share) => (this.progress = share));
+  }
+
+  async #run(start: (upload: Upload) => Promise<Job>): Promise<void> {
     try {
-      const archive = await packed(found);
-      this.phase = "sending";
-      this.job = await sent(archive, (share) => (this.progress = share));
+      this.job = await start(this);
       this.phase = "analyzing";
       this.progress = 0;
       this.job = await followed(this.job.id, (job) => this.#show(job));
