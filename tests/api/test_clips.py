@@ -107,6 +107,23 @@ def test_lists_are_filtered_by_where_clips_come_from(idle: httpx2.Client) -> Non
     assert found(source="studio") == set()
 
 
+def test_lists_name_clips_that_lack_labels(idle: httpx2.Client) -> None:
+    source = "lacks labels"
+    whole = _post(idle, _tiny(63), source=source, person="eva", task="hop", words="hop")
+    nobody = _post(idle, _tiny(64), source=source, task="hop", words="hop")
+    ids = {name: sent.json()["clip"]["id"] for name, sent in (("whole", whole), ("no", nobody))}
+
+    def found(**filters: Any) -> set[str]:
+        items = idle.get("/v1/clips", params={"source": source} | filters).json()["items"]
+        return {clip["id"] for clip in items}
+
+    assert found(missing=["person", "words"]) == {ids["no"]}
+    assert found(missing="task") == set()
+    assert found(has_warnings=False) == set(ids.values())
+    assert found(has_warnings=True) == set()
+    assert idle.get("/v1/clips", params={"missing": "name"}).status_code == 422
+
+
 def test_lists_and_maps_take_every_filter_of_a_search(idle: httpx2.Client) -> None:
     reply = idle.get("/openapi.json").json()
     of_search = set(reply["components"]["schemas"]["Filter"]["properties"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import httpx2
+import pytest
 
 
 def test_the_false_accept_rate_is_set_and_shown(demo: httpx2.Client) -> None:
@@ -24,3 +25,38 @@ def test_the_false_accept_rate_is_set_and_shown(demo: httpx2.Client) -> None:
     words = f"/v1/models/{of_kind['words']['id']}"
     assert demo.patch(words, json={"false_accept_rate": 0.1}).status_code == 422
     assert demo.patch("/v1/models/nobody", json={"false_accept_rate": 0.1}).status_code == 404
+
+
+@pytest.mark.parametrize("factor", ["person", "task"])
+def test_the_confusion_matrix_counts_every_labeled_clip(demo: httpx2.Client, factor: str) -> None:
+    matrix = demo.get("/v1/models/confusion", params={"factor": factor}).json()
+    fitted = {model["kind"]: model for model in demo.get("/v1/models").json()["items"]}
+    size = fitted["recogniser"]["library_size"]
+    cells = matrix["items"]
+    assert {cell["label"] for cell in cells} | {cell["guess"] for cell in cells} <= set(
+        matrix["names"]
+    )
+    assert sum(cell["count"] for cell in cells) == size
+    right = sum(cell["count"] for cell in cells if cell["label"] == cell["guess"])
+    share = fitted["recogniser"]["figures"]["held_out"]["default"][factor]
+    assert right / size == pytest.approx(share)
+    for cell in cells:
+        params = {"factor": factor, "label": cell["label"], "guess": cell["guess"]}
+        clips = demo.get("/v1/models/confusion/clips", params=params).json()["items"]
+        assert len(clips) == cell["count"]
+        assert {clip[factor] for clip in clips} == {cell["label"]}
+    nobody = {"factor": factor, "label": "nobody", "guess": "nobody"}
+    assert demo.get("/v1/models/confusion/clips", params=nobody).json()["items"] == []
+    assert demo.get("/v1/models/confusion", params={"factor": "word"}).status_code == 422
+
+
+def test_signatures_are_points_of_persons(demo: httpx2.Client) -> None:
+    found = demo.get("/v1/models/signatures").json()
+    assert [one["person"] for one in found["items"]] == ["ada", "bruno"]
+    assert 0 < found["variance_kept"] <= 1
+
+
+def test_confusions_and_signatures_need_models(idle: httpx2.Client) -> None:
+    for path in ("confusion", "confusion/clips?label=a&guess=b", "signatures"):
+        answer = idle.get(f"/v1/models/{path}")
+        assert (answer.status_code, answer.json()["code"]) == (409, "model_not_fitted")

@@ -61,6 +61,10 @@ def test_the_map_names_every_clip(demo: httpx2.Client, space: str) -> None:
     assert reply["dimensions"] == 3
     assert len(reply["items"]) == reply["total"] > 0
     assert all(len(item["point"]) == 3 for item in reply["items"])
+    clips = {clip["id"]: clip for clip in demo.get("/v1/clips?limit=1000").json()["items"]}
+    for item in reply["items"]:
+        shown = ("person", "task", "words", "license", "source", "metadata", "duration")
+        assert all(item[name] == clips[item["clip_id"]][name] for name in shown)
     only = demo.get("/v1/space", params={"space": space, "task": "walk"}).json()
     assert {item["task"] for item in only["items"]} == {"walk"}
     assert demo.get("/v1/space", params={"dimensions": 4}).status_code == 422

@@ -22,7 +22,7 @@ from app.formats.read import read_recording
 from app.models.folds import recording_of
 from app.models.held_out.danced_tasks import arrange
 from app.models.held_out.perera_experiment import perera_tables
-from app.models.held_out.recognition import held_out_recognition_figures, unknown_figures
+from app.models.held_out.recognition import held_out_recognition, unknown_figures
 from app.models.recognition.answers import Answer, Recognition
 from app.models.recognition.flat_pca import fit_flat_pca, recognize_flat
 from app.models.recognition.multilinear import fit_multilinear, recognize_multilinear
@@ -120,9 +120,9 @@ def _recognize(
 
 
 def test_the_whole_library(library: Library) -> None:
-    figures = held_out_recognition_figures(
+    figures = held_out_recognition(
         library.samples, library.persons, library.tasks, library.groups, wide=library.wide
-    )
+    ).figures
     _print("all clips, 5 folds", figures)
     record = fit_recognizer(library.full, library.persons, library.tasks, library.groups)
     _print("unknown, all clips (threshold chosen on these)", unknown_figures(record))
@@ -136,7 +136,7 @@ def test_five_takes_a_cell(library: Library) -> None:
     samples, who, what = library.part(second, "multilinear")
     takes = [str(take) for take in library.takes[second]]
     wide = library.wide[second]
-    figures = held_out_recognition_figures(samples, who, what, takes, wide=wide)
+    figures = held_out_recognition(samples, who, what, takes, wide=wide).figures
     _print("dataset 2, a take held out in turn", figures)
     assert figures["default"]["task"] >= 0.993
     assert figures["default"]["person"] >= 0.996

@@ -38,6 +38,10 @@ def _addresses(clip_id: str) -> Iterator[tuple[str, str]]:
     yield "gallery", "/"
     yield "gallery-chosen", f"/?size=s&sel={clip_id}"
     yield "clip", f"/clips/{clip_id}?t=2&ghosts=1&trails=1"
+    yield "map-lit", "/map?q=wave&pick=kick"
+    yield "todo-unlabeled", "/todo?kind=unlabeled"
+    yield "models-people", "/models?tab=persons"
+    yield "models-words", "/models?tab=words"
     yield "search-words", "/search?q=wave&q=-left"
     yield "search-clip", f"/search?clip={clip_id}&start=0.5&end=2&scope=windows"
     for name in PAGE_NAMES:

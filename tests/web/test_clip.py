@@ -12,6 +12,7 @@ from playwright.sync_api import Browser, Locator, Page, expect
 from tests.live import Live
 from tests.web.accessibility import serious_faults
 from tests.web.browser import LOOKS, Scheme, opened
+from tests.web.pixels import colors_of
 
 pytestmark = pytest.mark.slow
 
@@ -20,15 +21,6 @@ class OpenClip(Protocol):
     """Opens the page of a kick, and waits for its player; gives the clip."""
 
     def __call__(self, page: Page, query: str = "") -> dict[str, Any]: ...
-
-
-COLORS = """async (bytes) => {
-  const image = await createImageBitmap(new Blob([new Uint8Array(bytes)]));
-  const context = new OffscreenCanvas(image.width, image.height).getContext("2d");
-  context.drawImage(image, 0, 0);
-  const {data} = context.getImageData(0, 0, image.width, image.height);
-  return new Set(new Uint32Array(data.buffer)).size;
-}"""
 
 
 @pytest.fixture
@@ -52,9 +44,7 @@ def player(page: Page) -> Locator:
 
 def lit(page: Page) -> int:
     """How many colors the player's picture has: one is an empty canvas."""
-    shot = player(page).locator("canvas").screenshot()
-    colors: int = page.evaluate(COLORS, list(shot))
-    return colors
+    return colors_of(player(page).locator("canvas"))
 
 
 def seconds(page: Page) -> float:

@@ -127,6 +127,34 @@ def test_parts_of_clips_are_found_with_their_times(page: Page, kick: dict[str, A
     expect(page).to_have_url(re.compile("hit="))
 
 
+def test_a_part_is_shown_where_it_lies_and_searched_with(page: Page, kick: dict[str, Any]) -> None:
+    page.goto(f"/clips/{kick['id']}?from=0.5&to=2")
+    page.get_by_role("link", name="More like this part").click()
+    expect(hits(page).first.locator(".line")).to_be_visible()
+    assert query_of(page) == {
+        "clip": [kick["id"]],
+        "start": ["0.5"],
+        "end": ["2"],
+        "scope": ["windows"],
+    }
+
+
+def test_a_pose_is_found_in_other_clips(page: Page, kick: dict[str, Any]) -> None:
+    page.goto(f"/clips/{kick['id']}?t=1.5")
+    page.get_by_role("link", name="Find this pose").click()
+    expect(hits(page).first).to_contain_text(re.compile(r"at \d+\.\d\d s"))
+    expect(page.get_by_text("A pose of")).to_be_visible()
+    hits(page).first.get_by_role("button").click()
+    expect(player(page).locator(".head")).to_have_count(2)
+    expect(page).to_have_url(re.compile(r"[?&]t="))
+    page.reload()
+    expect(player(page).locator(".head")).to_have_count(2)
+    page.get_by_label("At second").fill("0.5")
+    page.get_by_label("At second").press("Enter")
+    expect(page).to_have_url(re.compile(r"pose=0\.5"))
+    expect(hits(page).first).to_be_visible()
+
+
 def test_a_file_is_searched_with_and_asked_for_again(page: Page, tmp_path: Path) -> None:
     clip = next(demo_clips(("ada",), ("kick",), takes=1))
     path = tmp_path / "query.bvh"

@@ -19,7 +19,8 @@ from tests.web.browser import LOOKS, Scheme, opened
 
 pytestmark = pytest.mark.slow
 
-NAMED = ["", *(name for name in PAGE_NAMES if name != "clips")]
+NAMED = ["", *(name for name in PAGE_NAMES if name not in {"clips", "study"})]
+"""The pages that the navigation lists, in its order."""
 
 
 def test_every_page_opens_by_its_address_and_from_the_navigation(page: Page) -> None:

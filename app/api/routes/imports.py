@@ -68,3 +68,12 @@ def start_import(
     filename = archive.filename or "archive.zip"
     job = imports.start_import(lib, archive.file, filename, form.options())
     return JobStarted(job=Job.model_validate(job))
+
+
+@router.post("/demo", status_code=202, dependencies=[writes, changes], responses=refusals())
+def start_demo_import(lib: Lib) -> JobStarted:
+    """Add the demo library: 150 motions of six invented persons, to try everything with.
+
+    A worker generates them on this machine. Clips that the library has already are not added again.
+    """
+    return JobStarted(job=Job.model_validate(imports.start_demo(lib)))

@@ -2,14 +2,29 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter, Depends
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Query
 
 from app.api.bodies import require_json
 from app.api.deps import Lib, reads, writes
-from app.api.guard.admission import changes, quick
+from app.api.guard.admission import changes, heavy, quick
 from app.api.openapi import ModelId, refusals
+from app.api.schemas.clips import Clip
 from app.api.schemas.jobs import Job, JobStarted
-from app.api.schemas.models import Model, ModelList, ModelPatch, UnfittedModel
+from app.api.schemas.models import (
+    ConfusedClips,
+    ConfusedQuery,
+    Confusion,
+    ConfusionQuery,
+    Model,
+    ModelList,
+    ModelPatch,
+    Signatures,
+    UnfittedModel,
+)
+from app.services.recognition import confusion
+from app.services.recognition.signatures import signature_points
 from app.services.training import models
 from app.services.training.active_errors import active_errors
 
@@ -34,6 +49,25 @@ def update_model(lib: Lib, model_id: ModelId, patch: ModelPatch) -> Model:
     """Set the false-accept rate of a recognizer. It applies at once, and also after later fits."""
     record = models.set_false_accept_rate(lib, model_id, patch.false_accept_rate)
     return Model.of(record, active_errors(lib, record))
+
+
+@router.get("/confusion", dependencies=[reads, heavy], responses=refusals(409))
+def get_confusion(lib: Lib, query: Annotated[ConfusionQuery, Query()]) -> Confusion:
+    """What the recognizer takes clips for that it has not seen, as a confusion matrix."""
+    return Confusion.of(query.factor, *confusion.confusion(lib, query.factor))
+
+
+@router.get("/confusion/clips", dependencies=[reads, heavy], responses=refusals(409))
+def list_confused_clips(lib: Lib, query: Annotated[ConfusedQuery, Query()]) -> ConfusedClips:
+    """The clips behind a cell of the confusion matrix."""
+    found = confusion.confused_clips(lib, query.factor, query.label, query.guess, query.limit)
+    return ConfusedClips(items=[Clip.model_validate(clip) for clip in found])
+
+
+@router.get("/signatures", dependencies=[reads, heavy], responses=refusals(409))
+def list_signatures(lib: Lib) -> Signatures:
+    """The signature of each person in the multilinear model, as a point in two dimensions."""
+    return Signatures.of(*signature_points(lib))
 
 
 @router.post("/fit", status_code=202, dependencies=[writes, changes], responses=refusals(409))

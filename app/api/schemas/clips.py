@@ -32,7 +32,7 @@ from app.api.schemas.problem import StoredProblem
 from app.motion.skeleton.recording import FRAME_RATES
 from app.search.index.filters import parse_filter
 from app.services.fields import MAX_KEYPOSES, MAX_OFFSET, TEMPI
-from app.store.clips.filter import ClipFilter
+from app.store.clips.filter import MISSABLE, ClipFilter
 from app.store.clips.record import ClipState, Reanalysis
 
 Sort = Literal[
@@ -257,6 +257,14 @@ class ClipQuery(Filter):
     """Filters of a list of clips, as in a search. A clip must pass all given filters."""
 
     state: ClipState | None = None
+    missing: list[Literal["person", "task", "words"]] = Field(
+        default_factory=list,
+        max_length=len(MISSABLE),
+        description="Only clips that lack at least one of these labels.",
+    )
+    has_warnings: bool | None = Field(
+        None, description="true: only clips with warnings; false: only clips without."
+    )
     q: PartOfName | None = Field(
         None, description="Part of the name, of the path, or of a text of the metadata."
     )
@@ -268,4 +276,10 @@ class ClipQuery(Filter):
     def as_filter(self) -> ClipFilter:
         """The filter of the store."""
         states = () if self.state is None else (self.state,)
-        return replace(parse_filter(self.given()), state=states, q=self.q)
+        return replace(
+            parse_filter(self.given()),
+            state=states,
+            missing=tuple(self.missing),
+            has_warnings=self.has_warnings,
+            q=self.q,
+        )

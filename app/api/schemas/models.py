@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from datetime import datetime
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import Field
 
-from app.api.schemas.base import Incoming, Outgoing
+from app.api.schemas.base import Incoming, Limit, Outgoing
+from app.api.schemas.clips import Clip
+from app.numerics.arrays import FloatArray
 from app.services.library.fitted_models import FALSE_ACCEPT_RATE
+from app.services.recognition.confusion import Cell
 from app.services.training.active_errors import Errors
 from app.store.models import ModelRecord
 
@@ -110,3 +113,85 @@ class ModelList(Outgoing):
         description="Kinds of models that the last fit could not fit."
     )
     next: str | None = None
+
+
+Factor = Literal["person", "task"]
+
+
+class ConfusionQuery(Incoming):
+    """What is recognized."""
+
+    factor: Factor = Field("task", description="Persons or tasks.")
+
+
+class ConfusionCell(Outgoing):
+    """Clips with one label that were taken for one label."""
+
+    label: str
+    guess: str
+    count: int = Field(ge=1)
+
+
+class Confusion(Outgoing):
+    """The confusion matrix of the default recognizer; `next` is always null.
+
+    Each clip was recognized by a model that was fitted without its recording. Labels are those at
+    the fit.
+    """
+
+    factor: Factor
+    names: list[str] = Field(description="All labels, sorted.")
+    items: list[ConfusionCell] = Field(description="The cells that hold clips.")
+    next: str | None = None
+
+    @classmethod
+    def of(cls, factor: Factor, names: Sequence[str], cells: Sequence[Cell]) -> Confusion:
+        """The matrix as the API shows it."""
+        items = [ConfusionCell.model_validate(cell) for cell in cells]
+        return cls(factor=factor, names=list(names), items=items)
+
+
+class ConfusedQuery(ConfusionQuery):
+    """A cell of the confusion matrix."""
+
+    label: str = Field(min_length=1, max_length=300, examples=["TASK"])
+    guess: str = Field(
+        min_length=1,
+        max_length=300,
+        description="The label that the clips were taken for.",
+        examples=["TASK"],
+    )
+    limit: Limit = 100
+
+
+class ConfusedClips(Outgoing):
+    """The clips of a cell of the confusion matrix; `next` is always null."""
+
+    items: list[Clip]
+    next: str | None = None
+
+
+class Signature(Outgoing):
+    """The signature of a person, as a point."""
+
+    person: str
+    point: list[float] = Field(min_length=2, max_length=2)
+
+
+class Signatures(Outgoing):
+    """The signatures of all persons (Vasilescu 2002); `next` is always null."""
+
+    variance_kept: float = Field(
+        ge=0, le=1, description="Share of the signatures' variance that two dimensions show."
+    )
+    items: list[Signature]
+    next: str | None = None
+
+    @classmethod
+    def of(cls, persons: Sequence[str], points: FloatArray, kept: float) -> Signatures:
+        """The signatures as the API shows them."""
+        pairs = zip(persons, points.tolist(), strict=True)
+        return cls(
+            variance_kept=min(kept, 1.0),
+            items=[Signature(person=person, point=point) for person, point in pairs],
+        )

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from app.api.schemas.base import Outgoing
+from app.api.schemas.base import Metadata, Outgoing
 from app.api.schemas.filters import Filter
 from app.search.index.filters import parse_filter
 from app.services.find.map import MAX_POINTS, Map, SpaceName
@@ -42,6 +42,10 @@ class MapPoint(Outgoing):
     person: str | None
     task: str | None
     words: list[str]
+    license: str | None
+    source: str | None
+    metadata: Metadata = Field(description="Values of your own, by key.")
+    duration: float | None = Field(description="Seconds.")
     point: list[float] = Field(description="2 or 3 coordinates.")
 
 
@@ -80,6 +84,10 @@ class SpaceMap(Outgoing):
                     person=clip.person,
                     task=clip.task,
                     words=list(clip.words),
+                    license=clip.license,
+                    source=clip.source,
+                    metadata=dict(clip.metadata),
+                    duration=clip.duration,
                     point=point,
                 )
                 for clip, point in zip(drawn.clips, points, strict=True)

@@ -51,6 +51,7 @@ class Clips(Group[SenderType]):
     animation = CallMethod(calls_low_dimensional.get_animation)
     export = CallMethod(calls_export.get_export)
     upload_archive = CallMethod(calls_imports.start_import)
+    start_demo_import = CallMethod(calls_imports.start_demo_import)
     symbol_motion = CallMethod(calls_symbols.get_symbol_motion)
     symbol_motion_array = CallMethod(calls_symbols.get_symbol_motion_array)
     suggest_words = CallMethod(calls_suggestions.suggest_words)
@@ -81,6 +82,9 @@ class Models(Group[SenderType]):
 
     list = CallMethod(calls_models.list_models)
     update = CallMethod(calls_models.update_model)
+    confusion = CallMethod(calls_models.get_confusion)
+    list_confused_clips = CallMethod(calls_models.list_confused_clips)
+    list_signatures = CallMethod(calls_models.list_signatures)
     fit = CallMethod(calls_models.request_fit)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -36,10 +37,25 @@ class Clips(NamedTuple):
     groups: Sequence[str]
 
 
+Guess = tuple[str | None, str | None]
+"""The best person and the best task of a clip; None where there is no candidate."""
+
+
+class HeldOut(NamedTuple):
+    """How well clips are recognized by models that have not seen them.
+
+    figures: shares by method; guesses: of the default method, one for each clip, or empty if the
+    method cannot be fitted.
+    """
+
+    figures: dict[str, dict[str, float]]
+    guesses: list[Guess]
+
+
 _Recognize = Callable[[Clips, FloatArray], list[Recognition]]
 
 
-def held_out_recognition_figures(
+def held_out_recognition(
     samples: FloatArray,
     persons: Labels,
     tasks: Labels,
@@ -48,28 +64,34 @@ def held_out_recognition_figures(
     seed: int = 0,
     *,
     wide: FloatArray | None = None,
-) -> dict[str, dict[str, float]]:
+) -> HeldOut:
     """Shares of recognized clips; each clip is judged by a model of the other folds.
 
     samples: (clips, 1250); wide: (clips, 512) wide motion vectors, for the default method;
     groups: (clips,) clips of one recording share a value and a fold. The methods get no label of
     a judged clip.
 
-    Returns figures by method: "default", "multilinear", "perera", "pca" (flat PCA) and "prior"
+    The figures are by method: "default", "multilinear", "perera", "pca" (flat PCA) and "prior"
     (the most frequent label of the training folds). They are the shares "person", "task" and
     "both" of the clips that have the label, and "clips", the number of clips with both labels.
     The best candidate counts, even if the method calls it new. A method that cannot be fitted is
     left out.
     """
     full = samples if wide is None else full_samples(samples, wide)
-    default = _figures({"default": _default}, full, persons, tasks, groups, folds, seed)
+    fold = grouped_folds(groups, folds, seed=seed)
+    figures: dict[str, dict[str, float]] = {}
+    guesses: list[Guess] = []
+    with suppress(NotEnoughLabels):
+        guesses = _guesses(_default, np.asarray(full), persons, tasks, groups, fold)
+        figures["default"] = _shares(guesses, persons, tasks)
     methods = {
         "multilinear": _multilinear,
         "perera": _perera,
         "pca": _flat_pca,
         "prior": _prior,
     }
-    return default | _figures(methods, samples, persons, tasks, groups, folds, seed)
+    others = _figures(methods, samples, persons, tasks, groups, folds, seed)
+    return HeldOut(figures | others, guesses)
 
 
 def signature_figures(
@@ -135,9 +157,9 @@ def _guesses(
     tasks: Labels,
     groups: Sequence[str],
     fold: IntArray,
-) -> list[tuple[str | None, str | None]]:
+) -> list[Guess]:
     """For each clip the best person and task, by a model of all other folds."""
-    guesses: list[tuple[str | None, str | None]] = [(None, None)] * len(fold)
+    guesses: list[Guess] = [(None, None)] * len(fold)
     for each in np.unique(fold):
         train, probe = (np.flatnonzero(chosen).tolist() for chosen in (fold != each, fold == each))
         who, what = ([labels[i] for i in train] for labels in (persons, tasks))
@@ -152,9 +174,7 @@ def _best(answer: Answer) -> str | None:
     return answer.candidates[0].label if answer.candidates else None
 
 
-def _shares(
-    guesses: list[tuple[str | None, str | None]], persons: Labels, tasks: Labels
-) -> dict[str, float]:
+def _shares(guesses: list[Guess], persons: Labels, tasks: Labels) -> dict[str, float]:
     who = [guess[0] == person for guess, person in zip(guesses, persons, strict=True) if person]
     what = [guess[1] == task for guess, task in zip(guesses, tasks, strict=True) if task]
     pairs = zip(guesses, persons, tasks, strict=True)

@@ -8,6 +8,7 @@ job returns to the queue with its progress.
 
 from __future__ import annotations
 
+import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -47,6 +48,9 @@ OWN_PRIORITY = -1_000_000_000
 """The priority of an import that this process does itself: no worker may take it first."""
 OPTIONS = "options"
 """Member of the payload of an import."""
+DEMO = "demo"
+"""Member of the payload of an import that makes its own files: the demo library. Only one such
+import is queued at a time."""
 WAITING = "waiting for the clips' analyses"
 
 
@@ -84,6 +88,22 @@ def start_import(
             )
 
 
+def start_demo(lib: Library) -> JobRecord:
+    """Queue an import of the demo library, whose files the worker generates.
+
+    Returns the queued job if there is one already. Clips that exist are not added again.
+    """
+    job = NewJob(
+        JobKind.IMPORT,
+        payload={"filename": "demo library", DEMO: True, OPTIONS: ImportOptions().as_payload()},
+        priority=IMPORT_PRIORITY,
+        max_attempts=WORKER_DEATHS,
+        dedupe_key=DEMO,
+    )
+    with lib.store.write() as tx:
+        return jobs.enqueue(tx, job)
+
+
 def unpack(
     lib: Library, claimed: ClaimedJob, progress: Progress, should_stop: Callable[[], bool]
 ) -> None:
@@ -94,11 +114,8 @@ def unpack(
     already stay. Raises BadContent or TooLarge if the archive as a whole cannot be used, and
     LeaseLost if another worker has the job now.
     """
-    if claimed.file_sha256 is None:
-        raise BadContent("The command that imported these files was interrupted: run it again.")
     began = time.monotonic()
-    archive = lib.store.files.path(claimed.file_sha256)
-    with archive_files(archive, _limits(lib)) as files:
+    with _files_of(lib, claimed) as files:
         options = ImportOptions.of_payload(claimed.payload.get(OPTIONS))
         run = ImportRun(lib, claimed.lease, _plan(lib, files, options))
         turn = _Turn(lib, max(TURN_S, time.monotonic() - began))
@@ -106,6 +123,23 @@ def unpack(
             run.finish(WAITING)
         else:
             _give_turn(run)
+
+
+@contextmanager
+def _files_of(lib: Library, claimed: ClaimedJob) -> Iterator[list[SourceFile]]:
+    """The files of a claimed import: those of its archive, or those of the demo library."""
+    if claimed.payload.get(DEMO):
+        # Imported here: only this import needs it, and it is slow to import.
+        from app.demo.library import write_demo
+
+        with tempfile.TemporaryDirectory() as folder:
+            write_demo(Path(folder))
+            yield folder_files(Path(folder))
+        return
+    if claimed.file_sha256 is None:
+        raise BadContent("The command that imported these files was interrupted: run it again.")
+    with archive_files(lib.store.files.path(claimed.file_sha256), _limits(lib)) as files:
+        yield files
 
 
 def import_path(

@@ -19,7 +19,7 @@ from app.store.clips import versions as library
 
 OUTPUTS = f"{models.CLIP_ARRAY_PREFIX}outputs"
 POINTS = f"{models.CLIP_ARRAY_PREFIX}points"
-_IDS = f"{models.CLIP_ARRAY_PREFIX}ids"
+IDS = f"{models.CLIP_ARRAY_PREFIX}ids"
 MAX_VALUES = 50_000_000
 """Largest number of stored word scores (200 MB as float32). If a library has more, none are
 stored, and searches compute what they need."""
@@ -36,8 +36,7 @@ def precomputed_arrays(
     if not ids:
         return {}
     stored: dict[str, NDArray[Any]] = {
-        # (N, longest id) bytes: the store holds numeric arrays only.
-        _IDS: np.array([list(name) for name in _padded(ids)], dtype=np.uint8),
+        IDS: id_rows(ids),
         POINTS: points.astype(np.float32),
     }
     if outputs is not None and outputs.size <= MAX_VALUES:
@@ -51,19 +50,25 @@ def read_precomputed(lib: Library, model_id: str, name: str) -> tuple[Sequence[s
     name: OUTPUTS or POINTS. Returns n ids and their rows (n, width).
     """
     with lib.store.read() as tx:
-        stored = models.load_arrays(tx, model_id, (_IDS, name))
+        stored = models.load_arrays(tx, model_id, (IDS, name))
         fitted_at = models.get(tx, model_id).library_version
         changes = library.changed_since(tx, fitted_at)
     if name not in stored:
         return (), np.zeros((0, 0))
-    ids = [row.tobytes().rstrip(b"\0").decode() for row in stored[_IDS]]
+    ids = ids_of(stored[IDS])
     changed = {*changes.changed, *changes.removed}
     unchanged = [row for row, clip_id in enumerate(ids) if clip_id not in changed]
     return [ids[row] for row in unchanged], stored[name][unchanged]
 
 
-def _padded(ids: Sequence[str]) -> list[bytes]:
-    """The ids as bytes of one length, filled with zeros at the end."""
+def id_rows(ids: Sequence[str]) -> NDArray[np.uint8]:
+    """The ids as (N, longest id) bytes, with zeros at the end: the store holds numeric arrays."""
     raw = [clip_id.encode() for clip_id in ids]
-    width = max(map(len, raw))
-    return [name.ljust(width, b"\0") for name in raw]
+    width = max(map(len, raw), default=0)
+    rows = [list(name.ljust(width, b"\0")) for name in raw]
+    return np.array(rows, dtype=np.uint8).reshape(len(raw), width)
+
+
+def ids_of(rows: NDArray[np.uint8]) -> list[str]:
+    """The ids of `id_rows`."""
+    return [row.tobytes().rstrip(b"\0").decode() for row in rows]

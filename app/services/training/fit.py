@@ -12,7 +12,7 @@ from app.analysis.descriptors.motion_sample import SAMPLES
 from app.errors import NotEnoughLabels
 from app.models.held_out.metric import held_out_metric
 from app.models.held_out.recognition import (
-    held_out_recognition_figures,
+    held_out_recognition,
     signature_figures,
     unknown_figures,
 )
@@ -24,6 +24,7 @@ from app.models.recognition.recognizer import fit_recognizer
 from app.models.words.language.wordnet import Meanings
 from app.models.words.library import fit_library_words
 from app.services.library.fitted_models import INPUT_SHAPES, ModelKind, holds_persons, input_shapes
+from app.services.library.guessed_labels import guess_arrays
 from app.services.library.precomputed_rows import precomputed_arrays
 from app.services.training.annotated import read_annotated
 from app.services.training.keypose_learning import learn_keyposes
@@ -155,19 +156,15 @@ def word_figures(training: TrainingSet) -> Meta:
     return shown | {"correlations": correlations}
 
 
-def recognition_figures(training: TrainingSet) -> dict[str, dict[str, float]]:
-    """Held-out shares of recognized clips for the methods "default", "multilinear", "perera",
-    "pca" and "prior"."""
-    return held_out_recognition_figures(
-        training.samples, training.persons, training.tasks, training.groups, wide=training.wide
-    )
-
-
 def _fit_recognizer(training: TrainingSet, _: Before) -> Fit:
-    model = fit_recognizer(training.full_samples, training.persons, training.tasks, training.groups)
+    persons, tasks, groups = training.persons, training.tasks, training.groups
+    model = fit_recognizer(training.full_samples, persons, tasks, groups)
     arrays, meta = model.to_arrays()
-    figures: Meta = {"held_out": recognition_figures(training)}
-    return Fit(arrays, meta, figures | {"unknown": unknown_figures(model)})
+    judged = held_out_recognition(training.samples, persons, tasks, groups, wide=training.wide)
+    ids = [clip.id for clip in training.clips]
+    guesses, names = guess_arrays(ids, persons, tasks, judged.guesses)
+    figures: Meta = {"held_out": judged.figures, "unknown": unknown_figures(model)}
+    return Fit(arrays | guesses, meta | names, figures)
 
 
 def _fit_multilinear(training: TrainingSet, _: Before) -> Fit:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from sqlalchemy import ColumnElement, Select, and_, func, or_, select
+from sqlalchemy import ColumnElement, Select, String, and_, cast, func, or_, select
 
 from app.store.clips.record import ClipState
 from app.store.database.tables import clip_metadata, clip_words, clips
@@ -13,6 +13,8 @@ from app.store.database.tables import clip_metadata, clip_words, clips
 _LABELS = ("person", "task", "license", "source")
 """Labels that are columns of the table `clips`. ClipFilter has two fields for each: NAME and
 not_NAME."""
+MISSABLE = ("person", "task", "words")
+"""Labels that a clip may lack."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,9 +47,11 @@ class ClipFilter:
 
     A tuple is true if the clip has any of its values. A tuple whose name begins with `not_` is
     true if the clip has none of its values; a clip without the label passes. An empty tuple and
-    None are no condition. folder: the clip's file was in the folder or below it; q: a part of the
-    name, the path or a text of the metadata, in upper or lower case; min_duration, max_duration:
-    seconds, both ends included.
+    None are no condition. folder: the clip's file was in the folder or below it; missing: labels
+    (`MISSABLE`) of which the clip lacks at least one; has_warnings: whether it has any; q: a part
+    of the name, the path or a text of the metadata, in upper or lower case; min_duration,
+    max_duration: seconds, both ends included. A search knows none of state, missing, has_warnings
+    and q.
     """
 
     person: tuple[str, ...] = ()
@@ -64,6 +68,8 @@ class ClipFilter:
     not_folder: tuple[str, ...] = ()
     metadata: tuple[MetadataCondition, ...] = ()
     state: tuple[ClipState, ...] = ()
+    missing: tuple[str, ...] = ()
+    has_warnings: bool | None = None
     min_duration: float | None = None
     max_duration: float | None = None
     q: str | None = None
@@ -84,6 +90,7 @@ def condition(filter: ClipFilter, clip_id: ColumnElement[str] = clips.c.id) -> C
         terms.append(clips.c.state.in_([state.value for state in filter.state]))
     if filter.not_word:
         terms.append(clips.c.id.not_in(_carriers(filter.not_word)))
+    terms.extend(_lack_terms(filter))
     if filter.q:
         # autoescape: % and _ in `q` are plain characters, not wildcards.
         terms.append(clips.c.searched.contains(filter.q.casefold(), autoescape=True))
@@ -98,6 +105,19 @@ def id_sets(filter: ClipFilter) -> list[Select[tuple[str]]]:
     """
     accepted = [_holders(one) for one in filter.metadata if not one.is_negated]
     return [*accepted, _carriers(filter.word)] if filter.word else accepted
+
+
+def _lack_terms(filter: ClipFilter) -> Iterator[ColumnElement[bool]]:
+    if filter.missing:
+        lacks = {
+            "person": clips.c.person.is_(None),
+            "task": clips.c.task.is_(None),
+            "words": clips.c.id.not_in(select(clip_words.c.clip_id)),
+        }
+        yield or_(*(lacks[name] for name in filter.missing))
+    if filter.has_warnings is not None:
+        has_none = func.coalesce(cast(clips.c.warnings, String), "null").in_(("[]", "null"))
+        yield ~has_none if filter.has_warnings else has_none
 
 
 def is_in_folder(folder: str, parent: str) -> bool:

@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from app.models.held_out.recognition import (
-    held_out_recognition_figures,
+    held_out_recognition,
     signature_figures,
     unknown_figures,
 )
@@ -14,7 +14,7 @@ from tests.models.factor_clips import POSES, factor_clips
 def test_models_are_compared_with_the_prior() -> None:
     clips = factor_clips(persons=4, tasks=5, takes=3, width=POSES)
     groups = [str(i) for i in range(len(clips.persons))]
-    figures = held_out_recognition_figures(clips.samples, clips.persons, clips.tasks, groups)
+    figures = held_out_recognition(clips.samples, clips.persons, clips.tasks, groups).figures
     assert set(figures) == {"default", "multilinear", "perera", "pca", "prior"}
     for method in ("default", "multilinear", "perera", "pca"):
         assert figures[method]["both"] > 0.9
@@ -34,9 +34,9 @@ def test_signatures_are_judged_on_joint_angles() -> None:
 def test_a_recording_is_never_on_both_sides() -> None:
     clips = factor_clips(persons=4, tasks=5, takes=3, width=POSES)
     cells = [f"{p} {t}" for p, t in zip(clips.persons, clips.tasks, strict=True)]
-    apart = held_out_recognition_figures(
+    apart = held_out_recognition(
         clips.samples, clips.tasks, cells, cells
-    )  # the cell's own name can never be guessed when all its takes are held out
+    ).figures  # the cell's own name can never be guessed when all its takes are held out
     assert apart["default"]["task"] == 0.0
 
 
@@ -44,7 +44,7 @@ def test_a_library_without_persons_has_task_figures_only() -> None:
     clips = factor_clips(persons=3, tasks=4, takes=3, width=POSES)
     none: list[str | None] = [None] * len(clips.tasks)
     groups = [str(i) for i in range(len(clips.tasks))]
-    figures = held_out_recognition_figures(clips.samples, none, clips.tasks, groups)
+    figures = held_out_recognition(clips.samples, none, clips.tasks, groups).figures
     assert "multilinear" not in figures
     assert figures["default"]["task"] > 0.9
     assert "person" not in figures["default"]

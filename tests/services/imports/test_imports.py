@@ -232,3 +232,26 @@ def test_a_damaged_manifest_fails_the_whole_import(lib: Library) -> None:
     imports.start_import(lib, io.BytesIO(bytes(content)), "a.zip")
     with pytest.raises(Unreadable, match=r"manifest\.csv"):
         imports.unpack(lib, _claim(lib), lambda *_: None, lambda: False)
+
+
+def test_the_demo_library_is_generated_by_the_worker(
+    lib: Library, some_demo_clips: list[DemoClip], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    few = some_demo_clips[:2]
+
+    def write(folder: Path) -> int:
+        for clip in few:
+            (folder / clip.path.replace("/", "_")).write_bytes(clip.content)
+        return len(few)
+
+    monkeypatch.setattr("app.demo.library.write_demo", write)
+    job = imports.start_demo(lib)
+    assert imports.start_demo(lib).id == job.id
+    work(lib.settings)
+    ended = jobs.get_job(lib, job.id)
+    assert ended.state is JobState.SUCCEEDED
+    assert (ended.result or {})["new"] == len(few)
+    again = imports.start_demo(lib)
+    assert again.id != job.id
+    work(lib.settings)
+    assert (jobs.get_job(lib, again.id).result or {})["unchanged"] == len(few)

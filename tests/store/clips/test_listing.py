@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from app.errors import BadField
 from app.store.clips import listing as clip_listing
 from app.store.clips.filter import ClipFilter
-from app.store.clips.record import ClipRecord, ClipState
+from app.store.clips.record import ClipRecord, ClipState, ClipWarning
 from app.store.store import Store
 from tests.store.conftest import ON_ONE_STORE, AddClip
 
@@ -26,6 +26,7 @@ CLIPS: tuple[tuple[str, str | None, str | None, tuple[str, ...], float | None], 
     ("RUN", "ben", None, ("run",), None),
     ("back\\slash", None, None, (), None),
 )
+WARNINGS = (ClipWarning("frame_rate_suspect", "It looks too fast."),)
 
 
 @pytest.fixture
@@ -33,7 +34,9 @@ def library_of_six(add_clip: AddClip) -> list[ClipRecord]:
     return [
         add_clip(
             name,
-            ready=False if duration is None else {"duration": duration},
+            ready=False
+            if duration is None
+            else {"duration": duration, "warnings": WARNINGS if name == "run" else ()},
             person=person,
             task=task,
             words=words,
@@ -66,6 +69,10 @@ def names(store: Store, filter: ClipFilter) -> list[str]:
         (ClipFilter(state=(ClipState.QUEUED,)), lambda c: c.duration is None),
         (ClipFilter(min_duration=2.0), lambda c: (c.duration or 0) >= 2),
         (ClipFilter(max_duration=2.0), lambda c: c.duration is not None and c.duration <= 2),
+        (ClipFilter(missing=("task",)), lambda c: c.task is None),
+        (ClipFilter(missing=("person", "words")), lambda c: c.person is None or not c.words),
+        (ClipFilter(has_warnings=True), lambda c: c.warnings),
+        (ClipFilter(has_warnings=False), lambda c: not c.warnings),
         (ClipFilter(q="WALK"), lambda c: "walk" in c.name.lower()),
         (ClipFilter(q="ärger"), lambda c: c.name == "ÄRGER"),
         (ClipFilter(q="%"), lambda c: "%" in c.name),

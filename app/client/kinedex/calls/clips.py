@@ -31,6 +31,8 @@ def list_clips(
     min_duration: float | None = None,
     max_duration: float | None = None,
     state: ClipState | None = None,
+    missing: Sequence[Literal["person", "task", "words"]] | None = None,
+    has_warnings: bool | None = None,
     q: str | None = None,
     sort: Literal[
         "created_at",
@@ -65,6 +67,8 @@ def list_clips(
     not_folder: Clips of none of these folders.
     min_duration: Seconds.
     max_duration: Seconds.
+    missing: Only clips that lack at least one of these labels.
+    has_warnings: true: only clips with warnings; false: only clips without.
     q: Part of the name, of the path, or of a text of the metadata.
     sort: A minus sign at the start reverses the order. Default: -created_at.
     limit: Maximum number of items in all; None lists all.
@@ -95,6 +99,8 @@ def list_clips(
             min_duration=min_duration,
             max_duration=max_duration,
             state=state,
+            missing=missing,
+            has_warnings=has_warnings,
             q=q,
             sort=sort,
             limit=limit,

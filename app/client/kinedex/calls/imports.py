@@ -89,3 +89,14 @@ def start_import(
         files=given(archive=archive),
         progress=progress,
     )
+
+
+def start_demo_import() -> Call[JobStarted]:
+    """Add the demo library: 150 motions of six invented persons, to try everything with.
+
+    A worker generates them on this machine. Clips that the library has already are not added
+    again.
+    """
+    from kinedex.types.jobs import JobStarted
+
+    return Call("start_demo_import", "POST", "/v1/imports/demo", record(JobStarted))

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from kinedex.call import Call, path_of, record
-from kinedex.sent import corrections
+from kinedex.sent import corrections, given
 
 if TYPE_CHECKING:
     from kinedex.types.jobs import JobStarted
-    from kinedex.types.models import Model, ModelList
+    from kinedex.types.models import ConfusedClips, Confusion, Model, ModelList, Signatures
 
 
 def list_models() -> Call[ModelList]:
@@ -38,6 +38,53 @@ def update_model(model_id: str, false_accept_rate: float | None) -> Call[Model]:
         record(Model),
         json=corrections(false_accept_rate=false_accept_rate),
     )
+
+
+def get_confusion(*, factor: Literal["person", "task"] | None = None) -> Call[Confusion]:
+    """What the recognizer takes clips for that it has not seen, as a confusion matrix.
+
+    factor: Persons or tasks. Default: task.
+    """
+    from kinedex.types.models import Confusion
+
+    return Call(
+        "get_confusion",
+        "GET",
+        "/v1/models/confusion",
+        record(Confusion),
+        query=given(factor=factor),
+    )
+
+
+def list_confused_clips(
+    label: str,
+    guess: str,
+    *,
+    factor: Literal["person", "task"] | None = None,
+    limit: int | None = None,
+) -> Call[ConfusedClips]:
+    """The clips behind a cell of the confusion matrix.
+
+    factor: Persons or tasks. Default: task.
+    guess: The label that the clips were taken for.
+    limit: Maximum number of items in one answer. Default: 100.
+    """
+    from kinedex.types.models import ConfusedClips
+
+    return Call(
+        "list_confused_clips",
+        "GET",
+        "/v1/models/confusion/clips",
+        record(ConfusedClips),
+        query=given(factor=factor, label=label, guess=guess, limit=limit),
+    )
+
+
+def list_signatures() -> Call[Signatures]:
+    """The signature of each person in the multilinear model, as a point in two dimensions."""
+    from kinedex.types.models import Signatures
+
+    return Call("list_signatures", "GET", "/v1/models/signatures", record(Signatures))
 
 
 def request_fit() -> Call[JobStarted]:

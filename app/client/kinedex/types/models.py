@@ -4,9 +4,44 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Any
+from typing import Any, Literal
 
 from kinedex.records import Page, Record
+from kinedex.types.clips import Clip
+
+
+@dataclass(frozen=True, slots=True)
+class ConfusedClips(Page[Clip]):
+    """The clips of a cell of the confusion matrix; `next` is always null."""
+
+    items: list[Clip]
+    next: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class ConfusionCell(Record):
+    """Clips with one label that were taken for one label."""
+
+    label: str
+    guess: str
+    count: int
+
+
+@dataclass(frozen=True, slots=True)
+class Confusion(Page[ConfusionCell]):
+    """The confusion matrix of the default recognizer; `next` is always null.
+
+    Each clip was recognized by a model that was fitted without its recording. Labels are those at
+    the fit.
+
+    names: All labels, sorted.
+    items: The cells that hold clips.
+    """
+
+    factor: Literal["person", "task"]
+    names: list[str]
+    items: list[ConfusionCell]
+    next: str | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,4 +109,24 @@ class ModelList(Page[Model]):
 
     items: list[Model]
     unfitted: list[UnfittedModel]
+    next: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class Signature(Record):
+    """The signature of a person, as a point."""
+
+    person: str
+    point: list[float]
+
+
+@dataclass(frozen=True, slots=True)
+class Signatures(Page[Signature]):
+    """The signatures of all persons (Vasilescu 2002); `next` is always null.
+
+    variance_kept: Share of the signatures' variance that two dimensions show.
+    """
+
+    variance_kept: float
+    items: list[Signature]
     next: str | None

@@ -12,6 +12,8 @@ class MapPoint(Record):
     """A clip on the map.
 
     path: Path of the file, relative to its import.
+    metadata: Values of your own, by key.
+    duration: Seconds.
     point: 2 or 3 coordinates.
     """
 
@@ -21,6 +23,10 @@ class MapPoint(Record):
     person: str | None
     task: str | None
     words: list[str]
+    license: str | None
+    source: str | None
+    metadata: dict[str, bool | int | float | str]
+    duration: float | None
     point: list[float]
 
 

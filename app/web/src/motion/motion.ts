@@ -1,5 +1,5 @@
 /** Motion of clips as numbers, ready to draw. */
-import { askFor } from "$/api/client";
+import { askFor, type Schemas } from "$/api/client";
 import { Kept } from "$/core/kept";
 import { ROLES } from "./roles";
 
@@ -17,6 +17,8 @@ export interface SkeletonMotion extends Motion {
   readonly parents: readonly number[];
 }
 
+type MotionAnswer = Pick<Schemas["Motion"], "frame_rate" | "joint_names" | "parents" | "positions">;
+
 const OCTETS = { Accept: "application/octet-stream" };
 const PREVIEW_RATE = 30;
 const MAX_KEPT = 64;
@@ -26,7 +28,7 @@ const kept = new Kept<string, Promise<Motion>>(MAX_KEPT);
 export function roleMotion(clipId: string): Promise<Motion> {
   const found = kept.get(clipId);
   if (found) return found;
-  const asked = octets(clipId, `joints=roles&fps=${PREVIEW_RATE}`, ROLES.length);
+  const asked = octets(`${pathOf(clipId)}?joints=roles&fps=${PREVIEW_RATE}`, ROLES.length);
   kept.set(clipId, asked);
   asked.catch(() => kept.delete(clipId));
   return asked;
@@ -41,22 +43,34 @@ export async function skeletonMotion(
   frameRate: number,
   signal: AbortSignal,
 ): Promise<SkeletonMotion> {
+  const path = pathOf(clipId);
   const [described, motion] = await Promise.all([
-    askFor(`/v1/clips/${encodeURIComponent(clipId)}/motion?fps=1`, { signal }).then(
-      (answer) => answer.json() as Promise<{ joint_names: string[]; parents: number[] }>,
-    ),
-    octets(clipId, `fps=${frameRate}`, 0, signal),
+    askFor(`${path}?fps=1`, { signal }).then((answer) => answer.json() as Promise<MotionAnswer>),
+    octets(`${path}?fps=${frameRate}`, 0, signal),
   ]);
   return { ...motion, names: described.joint_names, parents: described.parents };
 }
 
-async function octets(
-  clipId: string,
-  query: string,
-  joints: number,
-  signal?: AbortSignal,
-): Promise<Motion> {
-  const path = `/v1/clips/${encodeURIComponent(clipId)}/motion?${query}`;
+/** A motion of a pair of the study, from the path that the pair gives. */
+export async function pairMotion(path: string, signal: AbortSignal): Promise<SkeletonMotion> {
+  return fromAnswer((await (await askFor(path, { signal })).json()) as MotionAnswer);
+}
+
+/** A motion in the form of JSON as one to play. */
+export function fromAnswer(answer: MotionAnswer): SkeletonMotion {
+  return {
+    names: answer.joint_names,
+    parents: answer.parents,
+    frameRate: answer.frame_rate,
+    frames: answer.positions.length,
+    joints: answer.joint_names.length,
+    positions: new Float32Array(answer.positions.flat(2)),
+  };
+}
+
+const pathOf = (clipId: string): string => `/v1/clips/${encodeURIComponent(clipId)}/motion`;
+
+async function octets(path: string, joints: number, signal?: AbortSignal): Promise<Motion> {
   const answer = await askFor(path, { headers: OCTETS, ...(signal && { signal }) });
   const shape = (answer.headers.get("X-Shape") ?? "").split(",").map(Number);
   const frameRate = Number(answer.headers.get("X-Frame-Rate"));

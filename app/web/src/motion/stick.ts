@@ -2,6 +2,7 @@
 import type { Motion } from "./motion";
 import { HEAD, HIPS, LINES } from "./roles";
 import type { Side } from "./skeleton";
+import { tokenColor } from "$/core/token";
 import { along, offset, type View } from "./view";
 
 export type Palette = Readonly<Record<Side | "ground", string>>;
@@ -14,24 +15,12 @@ const MARK_METERS = 0.5;
 
 /** The colors of a figure where `element` stands: they follow the theme. */
 export function paletteOf(element: Element): Palette {
-  const style = getComputedStyle(element);
-  const color = (name: string): string => resolved(element, style.getPropertyValue(name));
   return {
-    left: color("--left"),
-    right: color("--right"),
-    trunk: color("--trunk"),
-    ground: color("--line"),
+    left: tokenColor(element, "--left"),
+    right: tokenColor(element, "--right"),
+    trunk: tokenColor(element, "--trunk"),
+    ground: tokenColor(element, "--line"),
   };
-}
-
-/** `light-dark(...)` of a token as the color that it stands for. */
-function resolved(element: Element, value: string): string {
-  const probe = document.createElement("i");
-  probe.style.color = value;
-  element.append(probe);
-  const color = getComputedStyle(probe).color;
-  probe.remove();
-  return color;
 }
 
 /** The pose at a time in seconds, with the floor and marks on it that show how far it goes. */

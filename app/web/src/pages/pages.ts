@@ -23,11 +23,42 @@ export const PAGES: readonly PageEntry[] = [
     icon: "search",
     load: () => import("./search/Search.svelte"),
   },
+  {
+    name: "map",
+    label: "Map",
+    icon: "map",
+    load: () => import("./map/MapPage.svelte"),
+  },
+  {
+    name: "todo",
+    label: "To do",
+    icon: "todo",
+    load: () => import("./todo/Todo.svelte"),
+  },
+  {
+    name: "models",
+    label: "People",
+    icon: "people",
+    load: () => import("./models/Models.svelte"),
+  },
+  {
+    name: "make",
+    label: "Make",
+    icon: "make",
+    load: () => import("./make/Make.svelte"),
+  },
+  {
+    name: "live",
+    label: "Live",
+    icon: "live",
+    load: () => import("./live/Live.svelte"),
+  },
 ];
 
 /** Pages that the navigation does not list. */
 export const OTHER_PAGES: readonly Pick<PageEntry, "name" | "load">[] = [
   { name: "clips", load: () => import("./clip/ClipPage.svelte") },
+  { name: "study", load: () => import("./study/Study.svelte") },
 ];
 
 /** The page of the first part of a path; undefined where there is none. */

@@ -12,6 +12,9 @@ export interface Labels {
   remove: readonly string[];
 }
 
+/** What has to be known of a clip to label it. */
+export type Labeled = Pick<Clip, "id" | "person" | "task" | "words">;
+
 export type Patch = Schemas["ClipPatch"];
 
 export interface Outcome {
@@ -20,7 +23,7 @@ export interface Outcome {
 }
 
 /** What has to change of a clip; empty where it has these labels already. */
-export function patchFor(clip: Clip, labels: Labels): Patch {
+export function patchFor(clip: Labeled, labels: Labels): Patch {
   const patch: Patch = {};
   if (labels.person !== undefined && labels.person !== clip.person) patch.person = labels.person;
   if (labels.task !== undefined && labels.task !== clip.task) patch.task = labels.task;
@@ -32,8 +35,8 @@ export function patchFor(clip: Clip, labels: Labels): Patch {
 }
 
 /** The patch that takes another one back. */
-export function undoing(clip: Clip, patch: Patch): Patch {
-  const names = Object.keys(patch) as (keyof Patch & keyof Clip)[];
+export function undoing(clip: Labeled, patch: Patch): Patch {
+  const names = Object.keys(patch) as (keyof Patch & keyof Labeled)[];
   return Object.fromEntries(names.map((name) => [name, clip[name]]));
 }
 

@@ -32,6 +32,14 @@ it("a clip or a part of it is asked for before words", () => {
   });
 });
 
+it("a pose of a clip is asked for before its motion", () => {
+  expect(askedFor(read("clip=c1&pose=1.5&task=walk"))).toEqual({
+    kind: "pose",
+    body: { clip_id: "c1", time: 1.5, limit: 24, filter: { task: ["walk"] } },
+  });
+  expect(after("clip=c1&pose=1.5", query({ clip: "c2" }))).toBe("clip=c2");
+});
+
 it("a file is asked for by its name only", () => {
   expect(askedFor(read("file=a.bvh"))).toMatchObject({ kind: "file", name: "a.bvh" });
 });

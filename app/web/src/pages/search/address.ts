@@ -48,6 +48,8 @@ export const SEARCH = {
   /** The part of the clip or the file, seconds. */
   start: number(null, 0, MAX_SECONDS),
   end: number(null, 0, MAX_SECONDS),
+  /** The time of the pose of the clip that is the query, seconds; null: its motion is. */
+  pose: number(null, 0, MAX_SECONDS),
   method: choice(Object.keys(METHODS) as Method[], "fused"),
   scope: choice(Object.keys(SCOPES) as Scope[], "clips"),
   person: list(),
@@ -78,13 +80,21 @@ interface WordOptions extends Options {
   readonly words: readonly string[];
   readonly mode: Mode;
 }
+interface PoseOptions extends Options {
+  readonly clip_id: string;
+  readonly time: number;
+}
 export type Asked =
+  | { readonly kind: "pose"; readonly body: PoseOptions }
   | { readonly kind: "words"; readonly body: WordOptions }
   | { readonly kind: "clip"; readonly body: MotionOptions & { readonly clip_id: string } }
   | { readonly kind: "file"; readonly name: string; readonly body: MotionOptions };
 
 /** What the address asks for; null where it asks for nothing. A motion goes before words. */
 export function askedFor(values: SearchValues): Asked | null {
+  if (values.clip && values.pose !== null) {
+    return { kind: "pose", body: { clip_id: values.clip, time: values.pose, ...common(values) } };
+  }
   if (values.clip) return { kind: "clip", body: { clip_id: values.clip, ...motion(values) } };
   if (values.file) return { kind: "file", name: values.file, body: motion(values) };
   if (values.q.length === 0) return null;
@@ -122,6 +132,7 @@ const OTHER_QUERY: Partial<SearchValues> = {
   file: "",
   start: null,
   end: null,
+  pose: null,
   n: PAGE_SIZE,
   hit: "",
   t: 0,

@@ -2,7 +2,7 @@
 import { api, ask, askFor, type Schemas } from "$/api/client";
 import type { Asked } from "./address";
 
-export type Found = Schemas["MotionHits"] | Schemas["WordHits"];
+export type Found = Schemas["MotionHits"] | Schemas["WordHits"] | Schemas["PoseHits"];
 
 /** file: what is sent where a file is the query. Throws ApiProblem, Away, AbortError. */
 export async function send(asked: Asked, file: File | null, signal: AbortSignal): Promise<Found> {
@@ -14,6 +14,10 @@ export async function send(asked: Asked, file: File | null, signal: AbortSignal)
   if (asked.kind === "clip") {
     const body = asked.body as unknown as Schemas["MotionSearch"];
     return ask(api.POST("/v1/search/motion", { body, signal }));
+  }
+  if (asked.kind === "pose") {
+    const body = asked.body as unknown as Schemas["PoseSearch"];
+    return ask(api.POST("/v1/search/pose", { body, signal }));
   }
   const form = new FormData();
   for (const [name, value] of Object.entries(asked.body)) {

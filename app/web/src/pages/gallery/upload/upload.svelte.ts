@@ -4,19 +4,18 @@
  * is read.
  */
 import { api, ask, type Schemas } from "$/api/client";
+import { followed, type Job } from "$/api/jobs";
 import { problemOf } from "$/api/problem";
 import { server } from "$/api/server.svelte";
 import { root } from "$/core/root";
 import type { Found } from "./collect";
 
 export type JobFile = Schemas["JobFile"];
-type Job = Schemas["Job"];
 
 const MAX_LISTED = 1000;
 
 export class Upload {
   readonly name: string;
-  readonly count: number;
   phase: "packing" | "sending" | "analyzing" | "done" | "failed" = $state("packing");
   /** Share of the phase that is done, 0 to 1. */
   progress = $state(0);
@@ -27,22 +26,37 @@ export class Upload {
   #isListing = false;
   readonly #onchange: () => void;
 
-  /** onchange: called when clips have come or changed. */
-  constructor(found: readonly Found[], onchange: () => void) {
-    this.count = found.length;
-    this.name = found.length === 1 && found[0] ? found[0].file.name : `${found.length} files`;
+  /** start: begins the import. onchange: called when clips have come or changed. */
+  private constructor(name: string, start: (upload: Upload) => Promise<Job>, onchange: () => void) {
+    this.name = name;
     this.#onchange = onchange;
-    void this.#run(found);
+    void this.#run(start);
   }
 
-  async #run(found: readonly Found[]): Promise<void> {
+  /** Files that somebody has chosen or dropped. */
+  static of(found: readonly Found[], onchange: () => void): Upload {
+    const only = found.length === 1 ? found[0]?.file.name : undefined;
+    return new Upload(only ?? `${found.length} files`, (upload) => upload.#send(found), onchange);
+  }
+
+  /** The demo library, which the service makes itself. */
+  static demo(onchange: () => void): Upload {
+    const start = async (): Promise<Job> => (await ask(api.POST("/v1/imports/demo"))).job;
+    return new Upload("Demo library", start, onchange);
+  }
+
+  async #send(found: readonly Found[]): Promise<Job> {
+    const archive = await packed(found);
+    this.phase = "sending";
+    return sent(archive, (share) => (this.progress = share));
+  }
+
+  async #run(start: (upload: Upload) => Promise<Job>): Promise<void> {
     try {
-      const archive = await packed(found);
-      this.phase = "sending";
-      this.job = await sent(archive, (share) => (this.progress = share));
+      this.job = await start(this);
       this.phase = "analyzing";
       this.progress = 0;
-      this.job = await this.#followed(this.job.id);
+      this.job = await followed(this.job.id, (job) => this.#show(job));
       await this.#list(this.job.id);
       this.failure = this.job.error ? problemOf(this.job.error, 0) : undefined;
       this.phase = this.job.state === "succeeded" ? "done" : "failed";
@@ -53,25 +67,11 @@ export class Upload {
     this.#onchange();
   }
 
-  /** The job when it has ended; meanwhile its progress and its files are shown. */
-  #followed(id: string): Promise<Job> {
-    const events = new EventSource(`${root}/v1/jobs/${id}/events`);
-    return new Promise((ended) => {
-      events.addEventListener("progress", (event) => {
-        const job = JSON.parse(event.data as string) as Job;
-        this.job = job;
-        this.progress = job.progress;
-        void this.#list(id);
-        this.#onchange();
-      });
-      events.addEventListener("done", (event) => {
-        events.close();
-        ended(JSON.parse(event.data as string) as Job);
-      });
-      // The browser opens the stream again by itself; meanwhile we look for the service.
-      events.addEventListener("error", () => server.lost());
-      events.addEventListener("open", () => server.found());
-    });
+  #show(job: Job): void {
+    this.job = job;
+    this.progress = job.progress;
+    void this.#list(job.id);
+    this.#onchange();
   }
 
   async #list(id: string): Promise<void> {
