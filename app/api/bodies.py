@@ -1,7 +1,7 @@
 """Bodies that FastAPI does not read by itself: multipart with limits, and JSON or multipart.
 
-A form's text fields are checked by a pydantic model, its files by name. A text field that
-is empty counts as not sent, as browsers send it.
+A pydantic model checks the text fields of a form; files are matched by the name of their field.
+Browsers send an empty text field too: it counts as not sent.
 """
 
 from __future__ import annotations
@@ -117,7 +117,7 @@ def _sort(form: FormData, files: set[str]) -> tuple[dict[str, str], dict[str, Up
         elif value:
             texts[name] = value
     if wrong:
-        raise BadField("The form has fields that are wrong.", places=wrong)
+        raise BadField("Some fields of the form are wrong.", places=wrong)
     return texts, uploads
 
 

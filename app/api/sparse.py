@@ -17,7 +17,7 @@ from app.kinedex_error import Place
 
 ChosenFields = Annotated[Fields | None, Query()]
 CACHED = 256
-"""Combinations of fields whose model is kept. To make a model takes about 1 ms."""
+"""Combinations of fields whose model is kept. Making a model takes about 1 ms."""
 
 
 def sparse_item(model: type[BaseModel], names: list[str], value: object) -> Response:
@@ -31,14 +31,14 @@ def sparse_page(page: type[BaseModel], names: list[str], value: object) -> Respo
 
 
 def clip_fields(names: list[str] | None) -> frozenset[str] | None:
-    """The fields of each hit's clip that are needed for the chosen members; None for all."""
+    """The clip fields that the chosen members of a hit need; None if all are needed."""
     if names is None or "clip" in names:
         return None
     return frozenset(name.removeprefix("clip.") for name in names if name.startswith("clip."))
 
 
 def _written(model: type[BaseModel], value: object) -> Response:
-    # Not by FastAPI, which would check the answer against the schema of whole items.
+    # FastAPI does not write this answer, because it would check it against whole items.
     content = model.model_validate(value, from_attributes=True).model_dump_json()
     return Response(content, media_type="application/json")
 

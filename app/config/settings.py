@@ -66,13 +66,13 @@ class Settings(BaseSettings):
     )
     trusted_proxies: _Listed = Field(
         (),
-        description="Addresses or networks of reverse proxies, with commas between them. Only "
+        description="Addresses or networks of reverse proxies, separated by commas. Only "
         "their `X-Forwarded-For` and `X-Forwarded-Proto` are believed.",
     )
     cors_origins: _Listed = Field(
         (),
-        description="Origins of web pages that may call the API from a browser, with commas "
-        "between them, as in `https://viewer.example`.",
+        description="Origins of web pages that may call the API from a browser, separated by "
+        "commas, as in `https://viewer.example`.",
     )
     webhook_http: bool = Field(
         False,
@@ -104,8 +104,8 @@ class Settings(BaseSettings):
     max_concurrent_uploads: int = Field(
         16,
         ge=1,
-        description="Uploads to store that are received at once, and the same number to search "
-        "with; more are answered 503 with Retry-After.",
+        description="Most uploads to store that are received at once. Uploads to search with have "
+        "a limit of the same size. Further ones are answered 503 with Retry-After.",
     )
     max_connections: int = Field(
         1000,
@@ -122,7 +122,8 @@ class Settings(BaseSettings):
         30.0,
         gt=0,
         le=DAY_S,
-        description="Seconds a call may wait and work before it ends as 503 `deadline_exceeded`.",
+        description="Seconds a call may wait and work before it is answered 503 "
+        "`deadline_exceeded`.",
     )
     query_timeout_s: float = Field(
         30.0, gt=0, le=DAY_S, description="Seconds that the analysis of an uploaded query may take."
@@ -135,7 +136,7 @@ class Settings(BaseSettings):
         description="Seconds that the analysis of one file may take before it is stopped.",
     )
     analysis_memory_mb: int = Field(
-        2048, ge=256, description="Address space of an analysis process, MiB."
+        2048, ge=256, description="Largest address space of an analysis process, MiB."
     )
     analysis_processes: int = Field(
         0, ge=0, description="Analysis processes of a worker; 0 takes one for each core."
@@ -154,7 +155,8 @@ class Settings(BaseSettings):
     job_max_attempts: int = Field(
         3,
         ge=1,
-        description="Attempts to analyze a file whose own content makes the analysis process die.",
+        description="Most attempts to analyze a file if the analysis process dies because of its "
+        "content.",
     )
     job_poll_s: float = Field(
         0.25,

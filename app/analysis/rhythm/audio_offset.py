@@ -4,7 +4,7 @@ With the right offset, the stops of the motion coincide with the beats. A steady
 offset only up to whole beats. Three weak clues show which beat it is: if the tempo drifts, the
 stops fit the right beats best; a recording usually covers the whole motion; and the music is
 loudest while somebody dances. The result has the probability that the number of whole beats is
-right. The beats of the clip are right in both cases.
+right. The beats of the clip are right even if this number is wrong.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from app.analysis.rhythm.onsets import RATE, Onsets
 from app.numerics.arrays import FloatArray, IntArray
 
 MIN_COVERED = 0.6
-"""The share of the shorter one of motion and recording that both must have in common."""
+"""Motion and recording must overlap by at least this share of the shorter one."""
 
 MAX_SHARE_DIFFERENCE = 0.35
-"""A lag is tried if the share of stops that coincide with beats is below the best by less."""
+"""A lag is tried if its share of coinciding stops is less than this below the best share."""
 
 COINCIDENCE_WEIGHT, LIKELIHOOD_WEIGHT, COVERAGE_WEIGHT, FULLNESS_WEIGHT, SECONDS_WEIGHT = (
     18.0,
@@ -33,7 +33,8 @@ COINCIDENCE_WEIGHT, LIKELIHOOD_WEIGHT, COVERAGE_WEIGHT, FULLNESS_WEIGHT, SECONDS
 )
 """Weights: of the share of stops that coincide with beats; of how closely they do (log
 likelihood); of the share of the motion that is recorded; of how much fuller the music is during the
-motion than before and after it; and of each second from 0. They come from a multinomial logit on
+motion than before and after it; and of each second between the start of the motion and the start
+of the recording. They come from a multinomial logit on
 108 of the demo's dances: a third with clicks, a third with arranged music, and a third with music
 that does not change."""
 
@@ -47,7 +48,7 @@ SMOOTHING = 0.75
 """Beats (standard deviation) over which the fullness of the music is smoothed."""
 
 PHASES_TRIED = 10.0
-"""About how many independent phases of a beat are tried: each can fit the stops by chance."""
+"""The approximate number of independent phases that are tried. Each may fit the stops by chance."""
 
 MIN_CONFIDENCE = 0.9
 """With a lower confidence the offset counts as unknown."""
@@ -59,8 +60,9 @@ class Offset:
 
     seconds: the time of the motion at which it begins. confidence: 0..1, how certain it is that
     the stops coincide with the beats. is_given: whether a client gave the offset; then both
-    confidences are 1. beat: seconds; `seconds` may be wrong by a multiple of it.
-    beat_confidence: 0..1, the probability that it is not.
+    confidences are 1. beat: the length of a beat in
+    seconds; `seconds` may be wrong by a multiple of it. beat_confidence: 0..1, the probability
+    that it is not.
     """
 
     seconds: float
@@ -149,7 +151,7 @@ def _nearest(times: FloatArray, beats: FloatArray) -> IntArray:
 
 
 def _fit(stops: Stops, beats: FloatArray, beat: float) -> float:
-    """The log likelihood of the distances of stops from near `beats` (b,).
+    """The log likelihood of the distances between stops and their nearest `beats` (b,).
 
     A constant delay of all stops does not count.
     """
@@ -166,7 +168,7 @@ def _fit(stops: Stops, beats: FloatArray, beat: float) -> float:
 def _fullness_contrast(coincidences: _Coincidences, onsets: Onsets, beat: float) -> FloatArray:
     """(c,) how much fuller the music is during the motion than outside, about -1..1.
 
-    This is the correlation of the music's fullness with being within the motion.
+    This is the correlation of the music's fullness with whether the moment is within the motion.
     """
     smooth = scipy.ndimage.gaussian_filter1d(onsets.rise, SMOOTHING * beat * RATE)
     full = np.interp(
@@ -185,7 +187,8 @@ def _fullness_contrast(coincidences: _Coincidences, onsets: Onsets, beat: float)
 def _confidence(stops: Stops, beats: FloatArray) -> float:
     """The confidence, 0..1, that the stops have a common phase of the beat (Rayleigh's test).
 
-    k random stops have a mean phase vector of length R with probability exp(-k R^2).
+    The mean phase vector of k random stops has the length R or more with a probability of about
+    exp(-k R^2).
     """
     beat = float(np.median(np.diff(beats)))
     within = (stops.times > beats[0] - beat) & (stops.times < beats[-1] + beat)

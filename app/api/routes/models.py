@@ -72,5 +72,5 @@ def list_signatures(lib: Lib) -> Signatures:
 
 @router.post("/fit", status_code=202, dependencies=[writes, changes], responses=refusals(409))
 def request_fit(lib: Lib) -> JobStarted:
-    """Fit all models again in the background. Until then, searches use the old models."""
+    """Fit all models again in the background. Until the fit ends, searches use the old models."""
     return JobStarted(job=Job.model_validate(models.request_fit(lib)))

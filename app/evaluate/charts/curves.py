@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
 PANEL = (4.6, 3.4)
-"""Inches of a panel: width, height."""
+"""Width and height of a panel, in inches."""
 MAX_BOLD_CURVES = 8
-"""If a group has more curves, they are thin and transparent."""
+"""If a group has more curves in a panel, they are thin and transparent."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +76,7 @@ def _draw(axes: Axes, panel: Panel, groups: Sequence[str]) -> dict[str, Line2D]:
     axes.set(title=panel.title, xlabel=panel.x_label, ylabel=panel.y_label)
     if panel.log_y:
         axes.set_yscale("log")
-        # matplotlib's own powers of ten are formulas, which are switched off (see _STYLE)
+        # matplotlib's own powers of ten are formulas, which are switched off (see `drawing._STYLE`)
         axes.yaxis.set_major_formatter("{x:.0e}")
     if panel.y_range:
         axes.set_ylim(*panel.y_range)

@@ -1,4 +1,4 @@
-"""Points and paths in two or three dimensions as a picture, groups by color and marker."""
+"""Draws points and paths in two or three dimensions. Color and marker show the group."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ def scatter_picture(
 ) -> bytes:
     """Draw all clouds in one frame with the two or three dimensions of the points.
 
-    axes: names of the dimensions; equal: one unit is as long on every axis.
+    axes: names of the dimensions; equal: whether one unit has the same length on every axis.
     Raises ValueError without a cloud, or when the dimensions are not two or three for all.
     """
     dimensions = {cloud.points.shape[-1] for cloud in clouds if cloud.points.ndim == 2}
     if len(dimensions) != 1 or not dimensions <= {2, 3} or any(c.points.ndim != 2 for c in clouds):
-        raise ValueError("clouds are (n, 2) or (n, 3), all alike")
+        raise ValueError("all clouds must be (n, 2), or all (n, 3)")
     (dimension,) = dimensions
 
     def draw(figure: Figure) -> None:

@@ -1,4 +1,4 @@
-"""Figures of trials: shares that were recognized, confusions, and how well new labels are found."""
+"""Computes figures from trials: shares recognized, confusion matrices, how well new labels show."""
 
 from __future__ import annotations
 
@@ -59,7 +59,8 @@ class Category:
     """The figures of one label that was left out of the training.
 
     refused: its clips that were called new; accepted: the known clips of the same rounds that
-    were called known; taken_for: the label that most of its other clips got.
+    were called known; taken_for: the most frequent answer for its clips that were called
+    known.
     """
 
     label: str
@@ -79,7 +80,8 @@ class Unknown:
     """How well a method separates labels that it has not seen from labels that it has.
 
     refused: new clips that were called new; accepted: known clips that were called known;
-    accepted_together: the same for known clips whose person was seen at the same task;
+    accepted_together: the same for known clips whose person the method has seen do the
+    same task;
     area_under_curve: the chance that a new clip has a larger novelty than a known one;
     categories: the figures of each label that was left out; curve: (P, 2) false acceptance and
     false rejection at P thresholds.

@@ -1,9 +1,11 @@
-"""Removes what names a forgotten person from the texts of clips and from lists of imported files.
+"""Removes the name of a forgotten person from the texts of clips and from lists of imported files.
 
-In the clips of the person, the name is replaced wherever it is. In the clips of others, only a
-whole folder of the path, a whole word or a whole source with this name is replaced, because a name
-can be a common word too: the person "Max" is not in `max_speed.bvh`. Metadata that hold the name
-are removed from all clips.
+In the clips of the person, the name is replaced wherever it is. In the clips of others, a word that
+equals the name is removed, and a folder of the path or a part of the source that equals it is
+replaced: no other text, because a name can be a common word too, and the person "Max" is not in
+`max_speed.bvh`. In lists of imported files, a name with a letter is replaced wherever it is.
+Metadata that hold the name are removed from all clips; a name without a letter, only from those
+of the person, and where the whole value equals it.
 """
 
 from __future__ import annotations

@@ -25,8 +25,9 @@ def widest_direction(relative: FloatArray, travel: FloatArray) -> FloatArray:
 
     relative: (frames, joints, 3) meters, Y up, relative to the hips; travel: (3,) meters from the
     first to the last frame. The direction is the first principal axis of the movement, with a small
-    weight for the extent of the body. A traveling body moves to the right. Otherwise the sign
-    depends only on the direction, so that similar clips have similar pictures.
+    weight for the extent of the body. A traveling body moves to the right. If
+    the body stays in place, the larger component is positive, so that similar clips have similar
+    pictures.
     """
     flat = np.asarray(relative, dtype=np.float64)[:, :, [0, 2]]
     moving = (flat - flat.mean(axis=0)).reshape(-1, 2)
@@ -40,7 +41,9 @@ def widest_direction(relative: FloatArray, travel: FloatArray) -> FloatArray:
 
 
 def limbs(parents: IntArray) -> list[list[int]]:
-    """A skeleton as lines of joints, from a root or branching joint to the next one or to an end.
+    """Split a skeleton into lines of joints.
+
+    Each line runs from a root or branching joint to the next branching joint or to an end.
 
     parents: (joints,) index of each joint's parent, -1 for a root. Returns joint indexes.
     """
@@ -60,11 +63,11 @@ def limbs(parents: IntArray) -> list[list[int]]:
 
 
 def color(line: Sequence[int], names: Sequence[str]) -> str:
-    """The color of a line by the name of its last joint (`left_...`, `right_...`), else TRUNK."""
+    """LEFT or RIGHT if the name of the line's last joint starts so (`left_...`), else TRUNK."""
     name = names[line[-1]] if names else ""
     return LEFT if name.startswith("left_") else RIGHT if name.startswith("right_") else TRUNK
 
 
 def text(value: str) -> str:
-    """The value without characters that XML does not allow, escaped."""
+    """The value without unprintable characters, escaped for XML."""
     return escape("".join(c for c in value if c.isprintable()))

@@ -51,7 +51,7 @@ def find_words(lib: Library, query: WordQuery) -> Hits:
     Words that the model does not know are left out, and reported in the result.
     Raises BadField, ModelNotFitted.
     """
-    # A command that searches by example does not wait for the modules of words.
+    # Imported here, so that a search by example does not load the modules of words.
     from app.services.find.by_words import WORD_MODES, rank_by_words
 
     began = time.perf_counter()
@@ -81,7 +81,8 @@ _Search = Callable[[Library, MotionQuery, Method, ClipFilter], HitPage]
 
 def _search(query: MotionQuery, method: Method) -> _Search:
     """The search function for a query's scope and method."""
-    if query.scope == "segments":  # nor for those of the analysis
+    if query.scope == "segments":
+        # Imported here, so that other searches do not load the analysis.
         from app.services.find.in_segments import find_in_segments
 
         return find_in_segments
@@ -97,7 +98,7 @@ def _by_example(
 ) -> HitPage:
     described = describe(lib, query.source, _NAMES)
     arrays = described.arrays
-    # An upload has no id: a cursor recognizes it by its descriptors.
+    # An upload has no id: the cursor identifies it by a hash of its descriptors.
     content = hashlib.sha256(arrays[FEATURES].tobytes()).hexdigest()
     question = cursors.digest(
         query.source.clip_id, content, method, clip_filter, query.include_self

@@ -1,4 +1,4 @@
-"""The keyposes that a manifest names for a clip, which may have other ones already."""
+"""Stores the keyposes that a manifest gives for a clip. The clip may already have others."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ def put_keyposes(
 ) -> tuple[Difference, ...]:
     """Store the times (seconds) that came with a clip, by the rules of `merging`.
 
-    Returns the difference from the stored ones; nothing if there is none, or if the clip had none
-    and nobody removed them.
+    Returns the difference from the stored times. It is empty if they are equal, or if the policy
+    is MERGE and the manifest gives the same times as before.
     """
     sent, stored = list(times), list(keypose_annotations.get(tx, clip.id) or ()) or None
     base = clip.imported.get(FIELD)

@@ -1,4 +1,4 @@
-"""The rule for the frame rate that a client requests, for all calls that take one."""
+"""Checks the frame rate that a client requests, for all calls that take one."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ MIN_FPS, MAX_FPS = 1.0, 1000.0
 
 MAX_POSITIONS = 30_000_000
 """Largest number of frames times joints that one call reads or makes. An hour at 120 Hz with 60
-joints has 26 million. The limit is 360 MB as float32."""
+joints has 26 million. At the limit, the coordinates take 360 MB as float32."""
 
 
 def requested_rate(
@@ -35,8 +35,9 @@ def requested_rate(
     # Resampling to a lower rate also costs work: it reads all frames of the source.
     if max(fps, source) * seconds * joints > MAX_POSITIONS:
         message = (
-            f"{seconds:.0f} s of {joints} joints from {source:g} to {fps:g} Hz are too much work: "
-            f"the limit is {MAX_POSITIONS:,} positions (frames times joints) before and after"
+            f"resampling {seconds:.0f} s of {joints} joints from {source:g} to {fps:g} Hz is too "
+            f"much work: at either rate, at most {MAX_POSITIONS:,} positions (frames times joints) "
+            "are allowed"
         )
         raise fields.bad_field("fps", message)
     return fps

@@ -88,7 +88,7 @@ def list_signatures() -> Call[Signatures]:
 
 
 def request_fit() -> Call[JobStarted]:
-    """Fit all models again in the background. Until then, searches use the old models."""
+    """Fit all models again in the background. Until the fit ends, searches use the old models."""
     from kinedex.types.jobs import JobStarted
 
     return Call("request_fit", "POST", "/v1/models/fit", record(JobStarted))
