@@ -293,17 +293,30 @@ def _fore_aft(across: FloatArray, feet: FloatArray) -> FloatArray:
 
 
 def _low_pass(samples: FloatArray, rate: float, cutoff: float) -> FloatArray:
-    """`samples` (frames, ...) without frequencies above `cutoff` Hz, and without a delay."""
+    """`samples` (frames, ...) without frequencies above `cutoff` Hz, and without a delay.
+
+    The same as scipy's `sosfiltfilt`, which computes the filter's state anew in each call. For a
+    short clip, this takes longer than the filter.
+    """
     # A filter near half of the rate is not stable, and there is little to remove.
     if cutoff >= 0.45 * rate:
         return samples
     padding = min(len(samples) - 1, round(rate))
-    return np.asarray(
-        scipy.signal.sosfiltfilt(_sections(rate, cutoff), samples, axis=0, padlen=padding)
-    )
+    sections, state = _filter(rate, cutoff)
+    state = state.reshape(*state.shape, *[1] * (samples.ndim - 1))
+    before, after = samples[padding:0:-1], samples[-2 : -padding - 2 : -1]
+    padded = np.concatenate([2 * samples[:1] - before, samples, 2 * samples[-1:] - after])
+    for _way in ("forward", "backward"):
+        padded, _state = scipy.signal.sosfilt(sections, padded, axis=0, zi=state * padded[0])
+        padded = padded[::-1]
+    return np.asarray(padded[padding : padding + len(samples)])
 
 
 @lru_cache(maxsize=64)
-def _sections(rate: float, cutoff: float) -> FloatArray:
-    """The filter. It is cached, because its design takes longer than its use on a short clip."""
-    return np.asarray(scipy.signal.butter(2, cutoff, fs=rate, output="sos"))
+def _filter(rate: float, cutoff: float) -> tuple[FloatArray, FloatArray]:
+    """The sections of the filter, and its state for a constant signal of 1.
+
+    They are cached, because their design takes longer than their use on a short clip.
+    """
+    sections = np.asarray(scipy.signal.butter(2, cutoff, fs=rate, output="sos"))
+    return sections, np.asarray(scipy.signal.sosfilt_zi(sections))

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.errors import NotHuman, TooLarge, Unreadable
+from app.formats.bvh.frames import MAX_FRAMES
 from app.formats.read import read_recording
 from app.formats.sniff import sniff
 from app.formats.trc.reader import read_trc
@@ -15,6 +16,7 @@ from app.motion.canonical.canonical import canonicalize
 from app.motion.roles.joint_roles import SUN_ROLES
 from app.motion.skeleton.recording import Recording
 from app.numerics.arrays import FloatArray
+from tests.cpu_time import cpu_seconds_below
 from tests.formats import mutations
 from tests.formats.c3d.files import marker_person, stacked
 from tests.formats.trc.files import trc
@@ -144,6 +146,12 @@ def test_a_wide_header_cannot_use_gigabytes() -> None:
     head = b"PathFileType\t4\nDataRate\n100\nFrame#\tTime\t" + labels + b"\n\t\t" + axes + b"\n"
     with pytest.raises(TooLarge):
         read_trc(head + b"1\t0\t1\t2\t3\n" * 1000)
+
+
+def test_more_lines_than_a_clip_may_have_frames_are_refused_unread() -> None:
+    head = b"PathFileType\t4\nDataRate\n100\nFrame#\tTime\tA\n\t\tX1\tY1\tZ1\n"
+    with cpu_seconds_below(1.0, "a million lines"), pytest.raises(TooLarge, match="lines"):
+        read_trc(head + b"1\t0\t1\t2\t3\n" * (MAX_FRAMES + 1))
 
 
 def test_markers_of_an_object_are_refused_with_their_labels() -> None:

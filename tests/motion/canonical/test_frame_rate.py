@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import scipy
 
 from app.formats.bvh.reader import read_bvh
+from app.motion.canonical import frame_rate
 from app.motion.canonical.canonical import canonicalize
 from app.motion.canonical.frame_rate import judge_frame_rate
 from app.numerics.arrays import FloatArray
@@ -114,3 +116,15 @@ def test_no_other_real_clip_gets_a_caution() -> None:
         if suspect != (abs(motion.frame_rate - float(row["fps"])) > 1):
             blamed.append(row["path"])
     assert blamed == []
+
+
+@pytest.mark.parametrize("frames", [6, 29, 30, 31, 200])
+@pytest.mark.parametrize("shape", [(3,), (2, 3)])
+@pytest.mark.parametrize("rate", [15.0, 30.0, 120.0])
+def test_the_filter_is_that_of_scipy(frames: int, shape: tuple[int, ...], rate: float) -> None:
+    samples = np.random.default_rng(frames).normal(size=(frames, *shape))
+    sections = scipy.signal.butter(2, frame_rate.CUTOFF, fs=rate, output="sos")
+    padding = min(frames - 1, round(rate))
+    expected = scipy.signal.sosfiltfilt(sections, samples, axis=0, padlen=padding)
+    found = frame_rate._low_pass(samples, rate, frame_rate.CUTOFF)
+    np.testing.assert_allclose(found, expected, atol=1e-12)
