@@ -40,7 +40,8 @@ def test_clips_are_listed_in_three_forms(kinedex: Kinedex) -> None:
     assert listed[0]["words"].split() == found[0]["words"]
     lines = kinedex("clips", "list", *filters).out.splitlines()
     assert lines[0].split() == ["id", "name", "person", "task", "state", "duration"]
-    assert lines[1].split()[1] == found[0]["path"] == "ada/kick_01.bvh"
+    assert found[0]["path"] == "ada/kick_01.bvh"
+    assert lines[1].split()[1].endswith("kick_01.bvh")
     assert [line.split()[0] for line in lines[1:]] == [clip["id"] for clip in found]
 
 

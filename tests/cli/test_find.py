@@ -56,7 +56,9 @@ def test_hits_are_printed_as_a_table(kinedex: Kinedex, folder: Path) -> None:
     assert ended.code == 0
     lines = ended.out.splitlines()
     assert lines[0].split() == ["rank", "score", "name", "person", "task", "id"]
-    assert lines[1].split()[:5] == ["1", "1.000", "ada/walk_01.bvh", "ada", "walk"]
+    rank, score, title, *labels = lines[1].split()[:5]
+    assert (rank, score, labels) == ("1", "1.000", ["ada", "walk"])
+    assert title.endswith("walk_01.bvh")
     assert len(lines) == 3
 
 
