@@ -8,7 +8,9 @@ export interface Notice {
   readonly expire?: () => void;
 }
 
-export const NOTICE_MS = 8000;
+const NOTICE_MS = 8000;
+/** Who reads slowly, or by ear, needs time to take something back. */
+const OFFER_MS = 20_000;
 
 class Notices {
   items: readonly Notice[] = $state.raw([]);
@@ -20,7 +22,7 @@ class Notices {
     this.items = [...this.items, notice];
     this.#timers.set(
       notice.id,
-      window.setTimeout(() => this.dismiss(notice), NOTICE_MS),
+      window.setTimeout(() => this.dismiss(notice), notice.action ? OFFER_MS : NOTICE_MS),
     );
   }
 

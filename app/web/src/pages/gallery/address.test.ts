@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
 import { readQuery, writeQuery } from "$/core/query";
-import { clipQuery, GALLERY, isFiltered, UNFILTERED } from "./address";
+import { clipQuery, GALLERY, isFiltered, metadataParts, UNFILTERED } from "./address";
 
 const read = (query: string) => readQuery(GALLERY, new URLSearchParams(query));
 
@@ -20,4 +20,16 @@ it("asks for all clips by itself, and after clearing", () => {
   expect(clipQuery(read(""))).toEqual({ sort: "-created_at" });
   const cleared = writeQuery(GALLERY, new URLSearchParams("word=a&max=3&size=s"), UNFILTERED);
   expect(cleared.toString()).toBe("size=s");
+});
+
+it("asks for metadata, for what clips lack, and for doubts", () => {
+  const values = read("meta=age%3D30&meta=age%3D31&meta=take%3Da%3Db&lacks=task&doubts=1");
+  expect(clipQuery(values)).toEqual({
+    sort: "-created_at",
+    "meta.age": ["30", "31"],
+    "meta.take": ["a=b"],
+    missing: ["task"],
+    has_warnings: true,
+  });
+  expect(metadataParts("take=a=b")).toEqual(["take", "a=b"]);
 });

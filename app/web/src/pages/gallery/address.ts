@@ -1,5 +1,5 @@
 /** The gallery's state in its address, and what it asks the API for. */
-import { choice, list, number, text, type Values } from "$/core/query";
+import { choice, flag, list, number, text, type Values } from "$/core/query";
 import type { operations } from "$/api/schema";
 
 export const SORTS = {
@@ -19,6 +19,12 @@ export type Size = keyof typeof SIZES;
 
 export const STATES = ["ready", "processing", "queued", "failed"] as const;
 
+/** Labels that a clip may lack. */
+export const LACKS = ["person", "task", "words"] as const;
+
+/** The key of the metadata that names a clip's collection. */
+export const COLLECTION = "collection";
+
 const MAX_SECONDS = 1e6;
 
 export const GALLERY = {
@@ -28,7 +34,13 @@ export const GALLERY = {
   word: list(),
   source: list(),
   license: list(),
+  /** Metadata, each as KEY=VALUE. */
+  meta: list(),
   state: choice(["any", ...STATES], "any"),
+  /** A label that the clips lack. */
+  lacks: choice(["nothing", ...LACKS], "nothing"),
+  /** Only clips with warnings. */
+  doubts: flag(),
   min: number(null, 0, MAX_SECONDS),
   max: number(null, 0, MAX_SECONDS),
   sort: choice(Object.keys(SORTS) as Sort[], "-created_at"),
@@ -50,9 +62,25 @@ export function clipQuery(values: GalleryValues): ClipQuery {
   for (const name of LABELS) {
     if (values[name].length > 0) query[name] = [...values[name]];
   }
+  Object.assign(query, metadataQuery(values.meta));
   if (values.state !== "any") query.state = values.state;
+  if (values.lacks !== "nothing") query.missing = [values.lacks];
+  if (values.doubts) query.has_warnings = true;
   if (values.min !== null) query.min_duration = values.min;
   if (values.max !== null) query.max_duration = values.max;
+  return query;
+}
+
+/** KEY=VALUE as its two parts; a value may hold an equals sign. */
+export function metadataParts(written: string): readonly [key: string, value: string] {
+  const at = written.indexOf("=");
+  return at < 0 ? [written, ""] : [written.slice(0, at), written.slice(at + 1)];
+}
+
+/** The API takes each key as a parameter of its own. */
+function metadataQuery(written: readonly string[]): Record<string, string[]> {
+  const query: Record<string, string[]> = {};
+  for (const [key, value] of written.map(metadataParts)) (query[`meta.${key}`] ??= []).push(value);
   return query;
 }
 
@@ -64,7 +92,10 @@ export const UNFILTERED: Partial<GalleryValues> = {
   word: [],
   source: [],
   license: [],
+  meta: [],
   state: "any",
+  lacks: "nothing",
+  doubts: false,
   min: null,
   max: null,
 };

@@ -2,13 +2,26 @@ import { describe, expect, it } from "vitest";
 import type { Clip } from "$/api/client";
 import { patchFor, undoing, words } from "./changes";
 
-const CLIP = { id: "a", person: "ada", task: null, words: ["kick", "slow"] } as unknown as Clip;
+const CLIP = {
+  id: "a",
+  person: "ada",
+  task: null,
+  words: ["kick", "slow"],
+  metadata: { take: 1 },
+} as unknown as Clip;
 
 describe("labels of many clips", () => {
   it("change only what differs, and can be taken back", () => {
     const patch = patchFor(CLIP, { person: "ada", task: "kick", add: ["kick"], remove: ["slow"] });
     expect(patch).toEqual({ task: "kick", words: ["kick"] });
     expect(undoing(CLIP, patch)).toEqual({ task: null, words: ["kick", "slow"] });
+  });
+
+  it("put a clip into a collection, and back", () => {
+    const patch = patchFor(CLIP, { collection: "best", add: [], remove: [] });
+    expect(patch).toEqual({ metadata: { collection: "best" } });
+    expect(undoing(CLIP, patch)).toEqual({ metadata: { collection: null } });
+    expect(patchFor(CLIP, { collection: null, add: [], remove: [] })).toEqual({});
   });
 
   it("are left alone where nothing is said, and forgotten where none is wanted", () => {
