@@ -8,7 +8,7 @@ import pytest
 
 def test_the_false_accept_rate_is_set_and_shown(demo: httpx2.Client) -> None:
     of_kind = {model["kind"]: model for model in demo.get("/v1/models").json()["items"]}
-    recognizer = of_kind["recogniser"]
+    recognizer = of_kind["recognizer"]
     assert of_kind["words"]["errors_in_force"] is None
     assert set(recognizer["errors_in_force"]) <= {"person", "task"}
     assert recognizer["false_accept_rate"] is None
@@ -18,7 +18,7 @@ def test_the_false_accept_rate_is_set_and_shown(demo: httpx2.Client) -> None:
     assert strict["errors_in_force"].keys() == recognizer["errors_in_force"].keys()
     assert all(one["false_acceptance"] <= 0.05 for one in strict["errors_in_force"].values())
     listed = {model["kind"]: model for model in demo.get("/v1/models").json()["items"]}
-    assert listed["recogniser"] == strict
+    assert listed["recognizer"] == strict
     assert demo.patch(path, json={"false_accept_rate": None}).json()["false_accept_rate"] is None
     for wrong in ({"false_accept_rate": 2}, {"false_accept_rate": "x"}, {}, {"rate": 0.1}):
         assert demo.patch(path, json=wrong).status_code == 422, wrong
@@ -31,14 +31,14 @@ def test_the_false_accept_rate_is_set_and_shown(demo: httpx2.Client) -> None:
 def test_the_confusion_matrix_counts_every_labeled_clip(demo: httpx2.Client, factor: str) -> None:
     matrix = demo.get("/v1/models/confusion", params={"factor": factor}).json()
     fitted = {model["kind"]: model for model in demo.get("/v1/models").json()["items"]}
-    size = fitted["recogniser"]["library_size"]
+    size = fitted["recognizer"]["library_size"]
     cells = matrix["items"]
     assert {cell["label"] for cell in cells} | {cell["guess"] for cell in cells} <= set(
         matrix["names"]
     )
     assert sum(cell["count"] for cell in cells) == size
     right = sum(cell["count"] for cell in cells if cell["label"] == cell["guess"])
-    share = fitted["recogniser"]["figures"]["held_out"]["default"][factor]
+    share = fitted["recognizer"]["figures"]["held_out"]["default"][factor]
     assert right / size == pytest.approx(share)
     for cell in cells:
         params = {"factor": factor, "label": cell["label"], "guess": cell["guess"]}

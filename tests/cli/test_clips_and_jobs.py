@@ -162,7 +162,7 @@ def test_the_status_counts_clips_and_shows_the_models(kinedex: Kinedex) -> None:
     values = {row["name"]: row["value"] for row in rows(kinedex("status", "--csv"))}
     assert int(values["clips.ready"]) == found["clips"]["ready"]
     shown = kinedex("status").out
-    assert "recogniser" in shown or "recognizer" in shown
+    assert "recognizer" in shown
     assert "GiB free" in shown
 
 

@@ -125,7 +125,7 @@ def test_a_fit_shows_the_held_out_figures_of_each_model(kinedex: Kinedex) -> Non
     assert ended.code == 0
     assert {line.split()[0] for line in ended.out.splitlines()[1:]} == {
         "words",
-        "recogniser",
+        "recognizer",
         "multilinear",
         "signatures",
         "perera",
@@ -133,7 +133,7 @@ def test_a_fit_shows_the_held_out_figures_of_each_model(kinedex: Kinedex) -> Non
         "metric-task",
         "metric-person",
     }
-    rows = [row[3:] for line in ended.out.splitlines() if (row := line.split())[0] == "recogniser"]
+    rows = [row[3:] for line in ended.out.splitlines() if (row := line.split())[0] == "recognizer"]
     for method in ("prior", "default"):
         (share,) = [row[-1] for row in rows if row[:-1] == ["held_out", method, "task"]]
         assert 0.0 <= float(share) <= 1.0

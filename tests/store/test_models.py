@@ -82,7 +82,7 @@ def test_kinds_are_removed_with_all_versions(store: Store) -> None:
         save(tx, "words", 1.0)
         save(tx, "words", 2.0)
         kept = save(tx, "multilinear", 3.0)
-        assert models.remove(tx, ["words", "recogniser"]) == 2
+        assert models.remove(tx, ["words", "recognizer"]) == 2
         assert models.list_current(tx) == (kept,)
 
 

@@ -31,6 +31,7 @@ READ_HEADERS = (
     "Allow",
     "Content-Disposition",
     "ETag",
+    "Idempotency-Replayed",
     "Retry-After",
     "X-Frame-Rate",
     "X-Request-Id",

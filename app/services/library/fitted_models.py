@@ -41,7 +41,7 @@ class ModelKind(StrEnum):
     """The same decomposition on joint angles, as in Vasilescu's paper."""
     PERERA = "perera"
     """Perera's task model: recognizes person and task by weighted distances of joints."""
-    RECOGNIZER = "recogniser"
+    RECOGNIZER = "recognizer"
     """The default recognizer of person and task. It answers "unknown" for new ones."""
     METRIC_TASK = "metric-task"
     """A distance that is small for clips of the same task."""

@@ -132,7 +132,7 @@ def test_a_fit_that_began_before_does_not_bring_the_person_back(
 
     monkeypatch.setattr(fitting, "read_training_set", read_then_forget)
     outcome = fit_library(lib.store)["models"]
-    assert outcome["recogniser"]["outcome"] == "skipped"
+    assert outcome["recognizer"]["outcome"] == "skipped"
     assert outcome["words"]["outcome"] == "fitted"
     assert {record.kind for record in models.list_models(lib)} == {"words", "metric-task"}
 

@@ -22,7 +22,7 @@ def _save(lib: Library, ids: list[str]) -> None:
     with lib.store.write() as tx:
         models.save(
             tx,
-            "recogniser",
+            "recognizer",
             meta={"model": meta},
             arrays=arrays,
             library_version=1,
@@ -50,7 +50,7 @@ def test_a_model_without_guesses_has_to_be_fitted_again(lib: Library) -> None:
     assert guess_arrays(["a"], ["ada"], ["kick"], []) == ({}, {})
     with lib.store.write() as tx:
         models.save(
-            tx, "recogniser", meta={"model": {}}, arrays={}, library_version=1, library_size=1
+            tx, "recognizer", meta={"model": {}}, arrays={}, library_version=1, library_size=1
         )
     with pytest.raises(ModelNotFitted):
         confusion(lib, "task")

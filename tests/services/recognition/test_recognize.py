@@ -67,13 +67,13 @@ def test_models_have_their_library_size_and_held_out_figures(
     ready_library: Library,
 ) -> None:
     fitted = {record.kind: record for record in models.list_models(ready_library)}
-    kinds = {"words", "recogniser", "multilinear", "metric-task", "metric-person", "synthesis"}
+    kinds = {"words", "recognizer", "multilinear", "metric-task", "metric-person", "synthesis"}
     kinds |= {"signatures", "perera"}
     assert set(fitted) == kinds
     assert {record.library_size for record in fitted.values()} == {12}
     words = {row["method"]: row for row in fitted["words"].meta["figures"]["figures"]}
     assert words["default"]["top_3_recognition"] >= words["prior"]["top_3_recognition"]
-    assert "default" in fitted["recogniser"].meta["figures"]["held_out"]
+    assert "default" in fitted["recognizer"].meta["figures"]["held_out"]
 
 
 def test_a_model_that_cannot_be_fitted_is_skipped_with_its_reason(
@@ -90,8 +90,8 @@ def test_a_model_that_cannot_be_fitted_is_skipped_with_its_reason(
     assert done.result is not None
     outcomes = done.result["models"]
     assert outcomes["words"]["outcome"] == "fitted"
-    assert outcomes["recogniser"]["outcome"] == outcomes["multilinear"]["outcome"] == "skipped"
-    assert outcomes["recogniser"]["reason"]
+    assert outcomes["recognizer"]["outcome"] == outcomes["multilinear"]["outcome"] == "skipped"
+    assert outcomes["recognizer"]["reason"]
     clip = upload(lib, some_demo_clips[0]).clip
     with pytest.raises(ModelNotFitted):
         recognize.recognize(lib, RecognizeQuery(QuerySource(clip.id)))
@@ -104,7 +104,7 @@ def test_a_lower_false_accept_rate_takes_effect_at_once_and_stays_after_a_fit(
         upload(lib, clip)
     models.request_fit(lib)
     work(lib.settings)
-    (record,) = (r for r in models.list_models(lib) if r.kind == "recogniser")
+    (record,) = (r for r in models.list_models(lib) if r.kind == "recognizer")
     curve = record.meta["figures"]["unknown"]["person"]["curve"]
     assert {"threshold", "false_acceptance", "false_rejection"} == set(curve[0])
     threshold = lib.models.recognizer(lib.store).model.person_calibration.threshold
@@ -124,7 +124,7 @@ def test_a_lower_false_accept_rate_takes_effect_at_once_and_stays_after_a_fit(
 
     models.request_fit(lib)
     work(lib.settings)
-    (again,) = (r for r in models.list_models(lib) if r.kind == "recogniser")
+    (again,) = (r for r in models.list_models(lib) if r.kind == "recognizer")
     assert again.settings == changed.settings
     assert models.set_false_accept_rate(lib, again.id, None).settings == {}
 

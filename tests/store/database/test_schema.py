@@ -14,6 +14,7 @@ from alembic.script import ScriptDirectory
 from sqlalchemy import create_mock_engine, text
 
 from app.errors import DatabaseOutOfDate
+from app.store import models
 from app.store.clips import repository as clips
 from app.store.database import schema
 from app.store.database.engine import Database
@@ -127,6 +128,21 @@ def test_an_upgrade_renames_the_outcomes_of_imports(store: Store, database_url: 
         (file,) = import_files.page(tx, job.id).items
     assert file.outcome is FileOutcome.UNCHANGED
     assert (found["new"], found["unchanged"], found["updated"]) == (1, 1, 0)
+
+
+def test_an_upgrade_renames_the_recognizer_and_keeps_it(store: Store, database_url: str) -> None:
+    with store.write() as tx:
+        made = models.save(
+            tx, "recognizer", meta={"a": 1}, arrays={}, library_version=1, library_size=1
+        )
+    database = Database(database_url, foreign_keys=False)
+    with database.migrate() as tx:
+        command.downgrade(schema._config(tx), "0014")
+        assert tx.execute(text("SELECT kind FROM models")).scalars().all() == ["recogniser"]
+    database.close()
+    schema.upgrade(database_url)
+    with store.read() as tx:
+        assert models.current(tx, "recognizer") == made
 
 
 def test_a_newer_database_is_refused(database_url: str) -> None:
