@@ -10,13 +10,14 @@ from app.api.bodies import require_json
 from app.api.deps import Lib, reads, writes
 from app.api.guard.admission import changes, heavy, quick
 from app.api.openapi import ModelId, refusals
+from app.api.schemas.base import Limit
 from app.api.schemas.clips import Clip
 from app.api.schemas.jobs import Job, JobStarted
 from app.api.schemas.models import (
     ConfusedClips,
-    ConfusedQuery,
     Confusion,
     ConfusionQuery,
+    Factor,
     Model,
     ModelList,
     ModelPatch,
@@ -27,6 +28,10 @@ from app.services.recognition import confusion
 from app.services.recognition.signatures import signature_points
 from app.services.training import models
 from app.services.training.active_errors import active_errors
+
+TaskOrPerson = Annotated[
+    str, Query(min_length=1, max_length=300, openapi_examples={"a task": {"value": "TASK"}})
+]
 
 router = APIRouter(prefix="/v1/models", tags=["models"])
 
@@ -58,9 +63,11 @@ def get_confusion(lib: Lib, query: Annotated[ConfusionQuery, Query()]) -> Confus
 
 
 @router.get("/confusion/clips", dependencies=[reads, heavy], responses=refusals(409))
-def list_confused_clips(lib: Lib, query: Annotated[ConfusedQuery, Query()]) -> ConfusedClips:
-    """The clips behind a cell of the confusion matrix."""
-    found = confusion.confused_clips(lib, query.factor, query.label, query.guess, query.limit)
+def list_confused_clips(
+    lib: Lib, label: TaskOrPerson, guess: TaskOrPerson, factor: Factor = "task", limit: Limit = 100
+) -> ConfusedClips:
+    """The clips with a label that were taken for `guess`: a cell of the confusion matrix."""
+    found = confusion.confused_clips(lib, factor, label, guess, limit)
     return ConfusedClips(items=[Clip.model_validate(clip) for clip in found])
 
 

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from app.api.schemas.base import Incoming, Limit, Outgoing
+from app.api.schemas.base import Incoming, Outgoing
 from app.api.schemas.clips import Clip
 from app.numerics.arrays import FloatArray
 from app.services.library.fitted_models import FALSE_ACCEPT_RATE
@@ -149,19 +149,6 @@ class Confusion(Outgoing):
         """The matrix as the API shows it."""
         items = [ConfusionCell.model_validate(cell) for cell in cells]
         return cls(factor=factor, names=list(names), items=items)
-
-
-class ConfusedQuery(ConfusionQuery):
-    """A cell of the confusion matrix."""
-
-    label: str = Field(min_length=1, max_length=300, examples=["TASK"])
-    guess: str = Field(
-        min_length=1,
-        max_length=300,
-        description="The label that the clips were taken for.",
-        examples=["TASK"],
-    )
-    limit: Limit = 100
 
 
 class ConfusedClips(Outgoing):

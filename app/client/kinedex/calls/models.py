@@ -63,10 +63,9 @@ def list_confused_clips(
     factor: Literal["person", "task"] | None = None,
     limit: int | None = None,
 ) -> Call[ConfusedClips]:
-    """The clips behind a cell of the confusion matrix.
+    """The clips with a label that were taken for `guess`: a cell of the confusion matrix.
 
-    factor: Persons or tasks. Default: task.
-    guess: The label that the clips were taken for.
+    factor: Default: task.
     limit: Maximum number of items in one answer. Default: 100.
     """
     from kinedex.types.models import ConfusedClips
@@ -76,7 +75,7 @@ def list_confused_clips(
         "GET",
         "/v1/models/confusion/clips",
         record(ConfusedClips),
-        query=given(factor=factor, label=label, guess=guess, limit=limit),
+        query=given(label=label, guess=guess, factor=factor, limit=limit),
     )
 
 

@@ -22,7 +22,7 @@ export function proposals(
   const named = (["task", "person"] as const).flatMap((field): Proposal[] => {
     const guess = found[field];
     const value = guess?.label ?? guess?.candidates[0]?.label;
-    if (!guess || !value || clip[field]) return [];
+    if (!guess || !value || clip[field] || guess.score < LEAST_SCORE) return [];
     const isLikely = guess.known && guess.score >= LIKELY;
     return [{ field, value, score: guess.score, isLikely }];
   });

@@ -57,7 +57,7 @@ export class Upload {
       this.phase = "analyzing";
       this.progress = 0;
       this.job = await followed(this.job.id, (job) => this.#show(job));
-      await this.#list(this.job.id);
+      await this.#read(this.job.id);
       this.failure = this.job.error ? problemOf(this.job.error, 0) : undefined;
       this.phase = this.job.state === "succeeded" ? "done" : "failed";
     } catch (failure) {
@@ -78,11 +78,17 @@ export class Upload {
     if (this.#isListing) return;
     this.#isListing = true;
     try {
-      const params = { path: { job_id: id }, query: { limit: MAX_LISTED } };
-      this.files = (await ask(api.GET("/v1/jobs/{job_id}/files", { params }))).items;
+      await this.#read(id);
     } finally {
       this.#isListing = false;
     }
+  }
+
+  async #read(id: string): Promise<void> {
+    const params = { path: { job_id: id }, query: { limit: MAX_LISTED } };
+    const files = (await ask(api.GET("/v1/jobs/{job_id}/files", { params }))).items;
+    // An earlier call may be answered after the last one.
+    if (!this.isOver) this.files = files;
   }
 }
 
