@@ -14,7 +14,6 @@ MAIN = {
     "metric-task": "tasks_held_out mean_average_precision",
     "perera": "unknown person balanced_accuracy",
     "recognizer": "held_out default task",
-    "recognizer": "held_out default task",
     "signatures": "held_out signatures task",
     "synthesis": "held_out new_task person",
     "words": "figures default top_3_recognition",
