@@ -13,7 +13,7 @@ from tests.api.conftest import assert_problem
 METHODS = ["GET", "POST", "PUT", "PATCH", "DELETE"]
 PATHS: dict[str, dict[str, Any]] = create_app(Settings()).openapi()["paths"]
 ALSO = {
-    "/v1/models/fit": ["PATCH"],
+    **{f"/v1/models/{name}": ["PATCH"] for name in ("confusion", "fit", "signatures")},
     "/v1/studies/low-dimensional/pairs/{pair_id}/votes": ["GET"],
 }
 """Methods of another path with a parameter that has this value."""

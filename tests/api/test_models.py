@@ -52,7 +52,9 @@ def test_the_confusion_matrix_counts_every_labeled_clip(demo: httpx2.Client, fac
 
 def test_signatures_are_points_of_persons(demo: httpx2.Client) -> None:
     found = demo.get("/v1/models/signatures").json()
-    assert [one["person"] for one in found["items"]] == ["ada", "bruno"]
+    persons = [one["person"] for one in found["items"]]
+    assert persons == sorted(persons)
+    assert {"ada", "bruno"} <= set(persons)  # another test may have added more
     assert 0 < found["variance_kept"] <= 1
 
 
