@@ -27,7 +27,6 @@ from app.api.guard.slow_bodies import SlowBodies
 from app.api.loading import Loading
 from app.api.metrics import install_metrics
 from app.api.openapi import describe
-from app.api.pages import install_pages
 from app.api.routes import (
     clip_views,
     clips,
@@ -57,6 +56,7 @@ from app.api.schemas.recognition import Recognize
 from app.api.schemas.search import MotionSearch
 from app.api.schemas.synthesis import Synthesize
 from app.api.validators import install_validators
+from app.api.web_pages import install_pages
 from app.config import Settings
 from app.kinedex_error import KinedexError
 from app.services.library.library import Library

@@ -14,7 +14,7 @@ from typing import Any, Literal
 
 from playwright.sync_api import Browser, Page, Playwright, Request, expect
 
-from app.api.pages import DIST
+from app.api.web_pages import DIST
 
 CHROMIUM = shutil.which("chromium") or "/usr/bin/chromium"
 # As on a laptop without a GPU: WebGL is drawn by software, and pages are not drawn by WebGL.

@@ -13,7 +13,7 @@ from fastapi import FastAPI
 from starlette.testclient import TestClient
 
 from app.api.guard.page_paths import PAGE_NAMES
-from app.api.pages import DIST, install_pages
+from app.api.web_pages import DIST, install_pages
 from tests.api.conftest import assert_problem
 
 ROOT = Path(__file__).resolve().parents[2]
