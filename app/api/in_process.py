@@ -20,6 +20,7 @@ from app.api.guard.callers import Caller
 from app.api.guard.gates import Gates
 from app.api.guard.limits import BodyLimit
 from app.config import DAY_S
+from app.quick_imports import without_collector
 from app.services.library.library import Library
 
 MODULES = {
@@ -93,11 +94,12 @@ def _application(library: Library, module: str) -> FastAPI:
     app.state.stopping = False
     app.state.gates = Gates.of(DAY_S)
     install_handlers(app)
-    if module:
-        app.include_router(import_module(f"app.api.routes.{module}").router)
-    else:
-        for one in import_module("app.api.app").ROUTES:
-            app.include_router(one.router)
+    with without_collector():
+        if module:
+            app.include_router(import_module(f"app.api.routes.{module}").router)
+        else:
+            for one in import_module("app.api.app").ROUTES:
+                app.include_router(one.router)
     app.add_middleware(BodyLimit, settings=library.settings)
     app.add_middleware(_LocalUser)
     return app

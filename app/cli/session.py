@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from app.cli.settings import open_library, remote_of
+from app.quick_imports import without_collector
 
 if TYPE_CHECKING:
     from kinedex import Kinedex
@@ -27,14 +28,16 @@ def open_client(context: typer.Context) -> Iterator[Kinedex]:
     Raises ConfigurationError if there is neither a service nor a library. The calls raise
     `kinedex.KinedexError`.
     """
-    from kinedex import Kinedex
+    with without_collector():
+        from kinedex import Kinedex
 
     remote = remote_of(context)
     if remote is not None:
         with Kinedex(remote.url, remote.api_key, **_tls(remote.url)) as client:
             yield client
         return
-    from app.api.in_process import in_process
+    with without_collector():
+        from app.api.in_process import in_process
 
     with (
         open_library(context) as library,
