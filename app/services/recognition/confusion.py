@@ -53,8 +53,8 @@ def confused_clips(
         names, pairs, stored = _stored(tx, factor)
         if label not in names or guess not in names:
             return ()
-        wanted = [names.index(label), names.index(guess)]
-        rows = np.flatnonzero((pairs == wanted).all(axis=1))[:limit]
+        cell = [names.index(label), names.index(guess)]
+        rows = np.flatnonzero((pairs == cell).all(axis=1))[:limit]
         return tuple(clips.get_many(tx, ids_of(stored[IDS][rows])).values())
 
 
