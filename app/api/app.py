@@ -51,6 +51,7 @@ from app.api.routes import (
     synthesize,
     webhooks,
 )
+from app.api.schemas.composed_search import ComposedSearch
 from app.api.schemas.pose import PoseSearch
 from app.api.schemas.recognition import Recognize
 from app.api.schemas.search import MotionSearch
@@ -141,7 +142,7 @@ def create_app(settings: Settings) -> FastAPI:
     install_pages(app)
     describe(
         app,
-        [MotionSearch, PoseSearch, Recognize, Synthesize],
+        [ComposedSearch, MotionSearch, PoseSearch, Recognize, Synthesize],
         lambda: example_values(app.state.library),
     )
     # The last one added is the outermost.

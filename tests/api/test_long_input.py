@@ -61,6 +61,8 @@ def test_every_text_and_list_of_a_request_has_a_bound_in_its_schema(idle: httpx2
     ("verb", "path", "body", "location"),
     [
         ("POST", "/v1/search/motion", {"clip_id": LONG}, "body.clip_id"),
+        ("POST", "/v1/search", {"examples": [{"clip_id": "a"}] * 21}, "body.examples"),
+        ("POST", "/v1/search", {"words": [LONG]}, "body.words.0"),
         ("POST", "/v1/search/words", {"words": ["a"] * 101}, "body.words"),
         ("POST", "/v1/search/words", {"words": [LONG]}, "body.words.0"),
         (

@@ -112,6 +112,8 @@ SEARCHES: list[tuple[str, dict[str, Any]]] = [
     ("/v1/search/motion", {"method": "vector", "scope": "segments", "segment": 0}),
     ("/v1/search/pose", {"time": 0.5}),
     ("/v1/search/words", {"words": ["walk"]}),
+    ("/v1/search", {"words": ["walk"], "examples": [{"clip_id": "CLIP_ID"}], "method": "fused"}),
+    ("/v1/search", {"words": ["walk"], "examples": [{"clip_id": "CLIP_ID"}], "method": "dtw"}),
 ]
 
 
@@ -120,7 +122,9 @@ def test_forged_cursors(
     demo: httpx2.Client, ids: dict[str, str], path: str, asked: dict[str, Any]
 ) -> None:
     body = {**asked, "limit": 1}
-    if "words" not in path:
+    if "examples" in asked:
+        body["examples"] = [{"clip_id": ids["clip_id"]}]
+    elif "words" not in path:
         body["clip_id"] = ids["clip_id"]
     answer = demo.post(path, json=body)
     if answer.status_code != 200 or answer.json()["next"] is None:

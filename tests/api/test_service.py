@@ -107,7 +107,12 @@ def test_a_call_with_two_bodies_has_an_optional_parameter(idle: httpx2.Client) -
         for operation in item.values()
         if len(operation.get("requestBody", {}).get("content", {})) > 1
     }
-    assert set(two_bodies) == {"/v1/search/motion", "/v1/search/pose", "/v1/recognize"}
+    assert set(two_bodies) == {
+        "/v1/search",
+        "/v1/search/motion",
+        "/v1/search/pose",
+        "/v1/recognize",
+    }
     for parameters in two_bodies.values():
         assert ("X-Request-Id", False) in [(one["name"], one["required"]) for one in parameters]
 

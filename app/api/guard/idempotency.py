@@ -38,7 +38,7 @@ log = logging.getLogger(__name__)
 
 HEADER = "Idempotency-Key"
 REPLAYED = {"Idempotency-Replayed": "true"}
-READING = ("/v1/search/", "/v1/recognize", "/v1/session")
+READING = ("/v1/search", "/v1/recognize", "/v1/session")
 """Calls by POST that change nothing stored, so that a key changes nothing either."""
 REPEATABLE = frozenset({"/v1/clips", "/v1/synthesize"})
 """Calls that find what an earlier call stored by its content."""

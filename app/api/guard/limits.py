@@ -33,6 +33,7 @@ class BodyLimit:
         self._limits = {
             "/v1/imports": settings.max_archive_bytes + MAX_FORM_TEXT_BYTES,
             "/v1/clips": settings.max_upload_bytes + MAX_FORM_TEXT_BYTES,
+            "/v1/search": settings.max_upload_bytes + MAX_FORM_TEXT_BYTES,
             "/v1/search/motion": settings.max_upload_bytes + MAX_FORM_TEXT_BYTES,
             "/v1/search/pose": settings.max_upload_bytes + MAX_FORM_TEXT_BYTES,
             "/v1/recognize": settings.max_upload_bytes + MAX_FORM_TEXT_BYTES,

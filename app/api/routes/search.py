@@ -1,4 +1,4 @@
-"""Searches: by example and by words."""
+"""Searches: by example, by words, and by several of both."""
 
 from __future__ import annotations
 
@@ -11,11 +11,13 @@ from app.api.bodies import is_multipart, read_form, read_json, require_json
 from app.api.deps import Lib, reads
 from app.api.guard.admission import heavy
 from app.api.openapi import body, refusals
-from app.api.queries import QUERY_FILES, source_of
+from app.api.queries import QUERY_FILES, file_of, source_of
+from app.api.schemas.composed_search import ComposedHits, ComposedSearch, ComposedSearchForm
 from app.api.schemas.search import MotionHits, MotionSearch, MotionSearchForm, WordHits, WordSearch
 from app.api.sparse import ChosenFields, clip_fields, sparse_page
 from app.services.find import find
-from app.services.find.queries import MotionQuery
+from app.services.find.by_parts import find_by_parts
+from app.services.find.queries import ComposedQuery, MotionQuery
 
 router = APIRouter(prefix="/v1/search", tags=["search"])
 
@@ -35,6 +37,27 @@ _MOTION_EXAMPLES = {
         "scope": "windows",
     },
     "steps like one of its steps": {"clip_id": "CLIP_ID", "segment": 0, "scope": "segments"},
+}
+
+_COMPOSED_EXAMPLES = {
+    "like two motions": {
+        "examples": [
+            {"clip_id": "CLIP_ID"},
+            {"clip_id": "CLIP_ID", "start": 0.5, "end": 1.5, "weight": 0.5},
+        ],
+        "limit": 5,
+    },
+    "like one motion, not like another, among walks": {
+        "examples": [
+            {"clip_id": "CLIP_ID"},
+            {"clip_id": "CLIP_ID", "end": 1, "against": True},
+        ],
+        "filter": {"task": ["walk"]},
+    },
+    "like a motion, and of these words": {
+        "examples": [{"clip_id": "CLIP_ID"}],
+        "words": ["wave", "-tired"],
+    },
 }
 
 
@@ -83,3 +106,36 @@ def search_words(lib: Lib, sent: WordSearch, fields: ChosenFields = None) -> Wor
     """
     found = find.find_words(lib, replace(sent.query(), clip_fields=clip_fields(fields)))
     return sparse_page(WordHits, fields, found) if fields else WordHits.model_validate(found)
+
+
+async def _composed_query(request: Request) -> ComposedQuery:
+    if not is_multipart(request):
+        return (await read_json(request, ComposedSearch)).query()
+    form, uploads = await read_form(request, ComposedSearchForm, QUERY_FILES)
+    return form.query(file_of(uploads, "file"), file_of(uploads, "skeleton"))
+
+
+@router.post(
+    "",
+    dependencies=[reads, Depends(_composed_query), heavy],
+    responses=refusals(400, 404, 409, 413, 415, 503, 507),
+    response_model=ComposedHits,
+    openapi_extra=body(
+        model=ComposedSearch,
+        examples=_COMPOSED_EXAMPLES,
+        form=ComposedSearchForm,
+        files=QUERY_FILES,
+    ),
+)
+def search_parts(
+    lib: Lib, query: Annotated[ComposedQuery, Depends(_composed_query)], fields: ChosenFields = None
+) -> ComposedHits | Response:
+    """Find motions by several parts together: examples and words, for something or against it.
+
+    A clip is a good hit if it is like every example that is for something, carries the words, and
+    is like no example that is against something. Each hit tells what each part contributed.
+    """
+    found = find_by_parts(lib, replace(query, clip_fields=clip_fields(fields)))
+    return (
+        sparse_page(ComposedHits, fields, found) if fields else ComposedHits.model_validate(found)
+    )

@@ -172,6 +172,14 @@ def _none_as_empty(value: Any) -> Any:
     return {} if value is None else value
 
 
+UnknownWords = Annotated[list[str], Field(description="Words that no clip carries.")]
+Expanded = Annotated[
+    dict[str, list[str]],
+    BeforeValidator(_none_as_empty),
+    Field(description="For each unknown word, the words that were used instead."),
+]
+
+
 class WordHits(Outgoing):
     """A page of a ranking by words, the most probable first."""
 
@@ -180,7 +188,5 @@ class WordHits(Outgoing):
     library_version: int
     items: list[WordHit]
     next: str | None
-    unknown_words: list[str] = Field(description="Words that no clip carries.")
-    expanded: Annotated[dict[str, list[str]], BeforeValidator(_none_as_empty)] = Field(
-        description="For each unknown word, the words that were used instead."
-    )
+    unknown_words: UnknownWords
+    expanded: Expanded

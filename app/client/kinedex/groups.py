@@ -73,6 +73,7 @@ class Search(Group[SenderType]):
 
     motion = CallMethod(calls_search.search_motion)
     words = CallMethod(calls_search.search_words)
+    parts = CallMethod(calls_search.search_parts)
     pose = CallMethod(calls_poses.search_pose)
     space = CallMethod(calls_space.get_space)
 

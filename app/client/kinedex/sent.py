@@ -44,12 +44,14 @@ def corrections(**fields: Any) -> dict[str, Any]:
 
 
 def form_text(value: Any) -> str:
-    """A field of a form as text: objects as JSON, lists separated by spaces."""
+    """A field of a form as text: objects and lists of objects as JSON, others with spaces."""
     if isinstance(value, str):
         return value
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, Mapping):
+        return json.dumps(value)
+    if isinstance(value, list | tuple) and any(isinstance(one, Mapping) for one in value):
         return json.dumps(value)
     if isinstance(value, list | tuple | set | frozenset):
         return " ".join(form_text(one) for one in value)

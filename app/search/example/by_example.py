@@ -46,18 +46,24 @@ def rank_by_example(
         near = index.nearest(query[VECTOR], clip_filter, exclude)
         if method is Method.VECTOR:
             return near
-        return ShortlistRanking(near, partial(_fused, query, near, load), SHORTLIST, anchor)
+        return ShortlistRanking(near, partial(_reranked, query, near, load), SHORTLIST, anchor)
     ids = index.candidates(clip_filter, exclude).ids
     return _ranking(ids, distances_to(query, list(ids), method, load))
 
 
-def _fused(query: Descriptors, near: NearestRanking, load: Loader, shortlist: Page) -> LowerBounds:
-    """The fused distances of the shortlist.
+def _reranked(
+    query: Descriptors, near: NearestRanking, load: Loader, shortlist: Page
+) -> LowerBounds:
+    return fused(query, shortlist.ids, near.vectors(shortlist.ids), load)
 
-    Warping is the slowest part, so it is measured last, and only if a page needs it.
+
+def fused(query: Descriptors, ids: IdArray, vectors: FloatArray, load: Loader) -> LowerBounds:
+    """The fused distances of the clips of a shortlist.
+
+    Warping is the slowest part, so it is measured last, and only if a page needs it. ids: (m,);
+    vectors: (m, 128) the motion vectors of these clips.
     """
-    ids = shortlist.ids
-    by_vectors = FusedDistance.of(query[VECTOR], near.vectors(ids))
+    by_vectors = FusedDistance.of(query[VECTOR], vectors)
 
     def measure(rows: IntArray) -> FloatArray:
         warped = distances_to(query, ids[rows].tolist(), Method.DTW, load)

@@ -13,10 +13,9 @@ import numpy as np
 
 from app.numerics.arrays import FloatArray
 from app.numerics.nearest import DECIMALS
-from app.search.index.nearest_ranking import NearestRanking
 from app.search.ranking.cursor import Anchor, Position
 from app.search.ranking.lower_bounds import LowerBoundRanking, LowerBounds
-from app.search.ranking.ranking import IdArray, Page
+from app.search.ranking.ranking import FirstStage, IdArray, Page
 
 STEP = 10.0**-DECIMALS
 """Added to the distances after the shortlist, so that each is larger than all in the shortlist."""
@@ -34,7 +33,7 @@ class ShortlistRanking:
     """
 
     def __init__(
-        self, first: NearestRanking, rerank: Rerank, size: int, anchor: Anchor | None = None
+        self, first: FirstStage, rerank: Rerank, size: int, anchor: Anchor | None = None
     ) -> None:
         """Prepare the ranking; distances are measured when a page is read.
 

@@ -18,6 +18,7 @@ from app.search.index.model_rows import (
     no_fitted_rows,
 )
 from app.search.index.nearest_ranking import NearestRanking
+from app.search.index.rows import RowsView
 from app.search.index.vector_index import VectorIndex
 from app.store.clips.filter import ClipFilter
 
@@ -47,9 +48,23 @@ class ProjectedIndex:
         model. fitted: the coordinates that its fit computed. Call `catch_up` of the index before.
         """
         version, rows = self._index.state
-        coordinates = self._coordinates.of(rows.labels, model, len(query), project, fitted)
-        rows = replace(rows, blocks=(self._block(coordinates),))
+        rows = self.rows(rows, model, len(query), project, fitted)
         return NearestRanking(version, rows, rows.labels.mask(clip_filter, exclude), query)
+
+    def rows(
+        self,
+        rows: RowsView,
+        model: str,
+        width: int,
+        project: Compute,
+        fitted: FittedRows = no_fitted_rows,
+    ) -> RowsView:
+        """The clips of a view of the index, with their coordinates (width,) as vectors.
+
+        model, project, fitted: as in `nearest`.
+        """
+        coordinates = self._coordinates.of(rows.labels, model, width, project, fitted)
+        return replace(rows, blocks=(self._block(coordinates),))
 
     def _block(self, coordinates: ModelRowsView) -> Block:
         """The coordinates of all clips as a block; 0 for clips without coordinates."""

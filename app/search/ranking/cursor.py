@@ -3,7 +3,8 @@
 A cursor contains a digest of the query, and the rank, distance and clip id of the last hit of a
 page. The next page begins after that hit. So clips that are added between two pages do not shift
 the other hits. A cursor of another query is refused. If a shortlist was ranked again, the cursor
-also contains the end of the shortlist.
+also contains the end of the shortlist. If distances are relative to typical ones of the library,
+it contains these too.
 """
 
 from __future__ import annotations
@@ -37,12 +38,16 @@ class Anchor:
 
 @dataclass(frozen=True, slots=True)
 class Position:
-    """The last hit of a page: its rank (from 1), distance and clip id; anchor: see `Anchor`."""
+    """The last hit of a page: its rank (from 1), distance and clip id; anchor: see `Anchor`.
+
+    scales: typical distances, above 0, that the first page took from the library.
+    """
 
     rank: int
     distance: float
     clip_id: str
     anchor: Anchor | None = None
+    scales: tuple[float, ...] = ()
 
 
 def digest(*parts: object) -> str:
@@ -53,11 +58,13 @@ def digest(*parts: object) -> str:
 
 def encode(position: Position, query: str) -> str:
     """The cursor for the page after `position`; query: the digest of the query."""
-    values: list[str | float | None] = [
+    values: list[str | float | list[float] | None] = [
         query, position.rank, position.distance, position.clip_id
     ]  # fmt: skip
     if (anchor := position.anchor) is not None:
         values += [anchor.distance, anchor.clip_id, anchor.end]
+    if position.scales:
+        values.append(list(position.scales))
     return cursor_codec.encode(values)
 
 
@@ -68,8 +75,14 @@ def decode(cursor: str, query: str) -> Position:
     """
     try:
         own_query, rank, distance, clip_id, *rest = cursor_codec.decode(cursor)
+        last = rest[-1] if rest else None
+        scales: tuple[float, ...] = ()
+        if isinstance(last, list):
+            scales, rest = _scales(last), rest[:-1]
         anchor = _anchor(rest) if rest else None
-        position = Position(as_count(rank, MAX_RANK), as_number(distance), as_text(clip_id), anchor)
+        position = Position(
+            as_count(rank, MAX_RANK), as_number(distance), as_text(clip_id), anchor, scales
+        )
     except ValueError as problem:
         raise _refused("this is not a cursor of this server") from problem
     if own_query != query:
@@ -80,6 +93,13 @@ def decode(cursor: str, query: str) -> Position:
 def _anchor(values: list[object]) -> Anchor:
     distance, clip_id, end = values
     return Anchor(as_number(distance), as_text(clip_id), None if end is None else as_number(end))
+
+
+def _scales(values: list[object]) -> tuple[float, ...]:
+    scales = tuple(as_number(value) for value in values)
+    if not all(scale > 0.0 for scale in scales):
+        raise cursor_codec.NotACursor("a scale is not above 0")
+    return scales
 
 
 def _refused(message: str) -> BadField:

@@ -51,6 +51,13 @@ class Ranked(Protocol):
         """The first `limit` clips after a position; the clip at the position may be deleted."""
 
 
+class FirstStage(Ranked, Protocol):
+    """A ranking whose first clips, the shortlist, can be ranked again."""
+
+    def until(self, distance: float, clip_id: str) -> Page:
+        """All clips up to (distance, clip id), inclusive."""
+
+
 class Ranking:
     """A ranking of clips with known distances."""
 
@@ -85,6 +92,11 @@ class Ranking:
         more = len(rows) > limit
         order = in_order(self._ids[rows], distances)[:limit]
         return Page(self._ids[rows[order]], distances[order], more)
+
+    def until(self, distance: float, clip_id: str) -> Page:
+        """All clips up to (distance, clip id), inclusive."""
+        after = len(self._rows_after(Position(0, distance, clip_id)))
+        return self.page(None, len(self) - after)
 
     @cached_property
     def _order(self) -> IntArray:

@@ -23,7 +23,6 @@ from app.services.library.precomputed_rows import OUTPUTS, POINTS, read_precompu
 from app.store.clips.filter import ClipFilter
 
 STATISTICS = "symbol_statistics"
-WORD_MODES = ("default", "cca")
 MIN_PROBABILITY = 0.5
 """A clip without words counts as carrying a word if the probability is at least this."""
 
@@ -45,14 +44,13 @@ class WordRanking:
 
 
 def rank_by_words(
-    lib: Library, texts: Sequence[str], mode: str, clip_filter: ClipFilter
+    lib: Library, clips: LabelView, texts: Sequence[str], mode: str, clip_filter: ClipFilter
 ) -> WordRanking:
     """Rank all clips that pass the filter; no clip if the model knows none of the words.
 
-    The index must have caught up with the library. texts: words, phrases or sentences. A word with
-    a minus excludes the clips that carry it, and clips without words that probably carry it. If all
-    words have a minus, clips are ranked by the probability that they carry none of them, in either
-    mode.
+    clips: of the library's index. texts: words, phrases or sentences. A word with a minus excludes
+    the clips that carry it, and clips without words that probably carry it. If all words have a
+    minus, clips are ranked by the probability that they carry none of them, in either mode.
 
     The score is the probability that a clip carries the requested words. The distance is -ln of it
     in mode "default", and 1 - cosine in the correlated space (Takano, sections 2.2-2.4) in mode
@@ -60,20 +58,42 @@ def rank_by_words(
     """
     fitted = lib.models.words(lib.store)
     asked = fitted.model.ask(texts)
-    clips = lib.index.state[1].labels
-    measure, to_score = _by_surprise, _probability
-    if not asked.weights:
-        measure = _by_absence
-    elif mode == "cca":
-        measure, to_score = _by_angle, partial(_angle_score, fitted.model, asked)
+    to_score = _angle_score if _is_by_angle(asked, mode) else _probability
     if not asked.weights and not asked.excluded:
         nothing = Ranking(np.empty(0, dtype=object), np.zeros(0))
-        return WordRanking(nothing, fitted.id, asked, to_score)
+        return WordRanking(nothing, fitted.id, asked, partial(to_score, fitted.model, asked))
     mask = clips.mask(clip_filter)
     if asked.excluded:
-        mask &= ~_probably_carries(lib, fitted, clips, asked.excluded)
-    rows, distances = measure(lib, fitted, clips, mask, asked)
-    return WordRanking(Ranking(clips.ids[rows], distances), fitted.id, asked, to_score)
+        mask &= ~probably_carries(lib, fitted, clips, asked.excluded)
+    rows, distances = measure(lib, fitted, clips, mask, asked, mode)
+    ranking = Ranking(clips.ids[rows], distances)
+    return WordRanking(ranking, fitted.id, asked, partial(to_score, fitted.model, asked))
+
+
+def measure(
+    lib: Library, fitted: Words, clips: LabelView, mask: BoolArray, asked: WordQuery, mode: str
+) -> tuple[IntArray, FloatArray]:
+    """Rows (k,) and distances (k,) of the clips in `mask` (n,) that the model knows.
+
+    asked: with at least one word of the vocabulary. Raises NotEnoughLabels as `rank_by_words`.
+    """
+    if not asked.weights:
+        return _by_absence(lib, fitted, clips, mask, asked)
+    by = _by_angle if _is_by_angle(asked, mode) else _by_surprise
+    return by(lib, fitted, clips, mask, asked)
+
+
+def probabilities(
+    model: LibraryWords, asked: WordQuery, mode: str, distances: FloatArray
+) -> FloatArray:
+    """(k,) the probabilities of `measure`d distances (k,)."""
+    if _is_by_angle(asked, mode):
+        return model.angle_scores(distances, asked)
+    return np.asarray(np.exp(-distances))
+
+
+def _is_by_angle(asked: WordQuery, mode: str) -> bool:
+    return mode == "cca" and bool(asked.weights)
 
 
 def clip_points(lib: Library, fitted: Words, clips: LabelView) -> ModelRowsView:
@@ -98,7 +118,7 @@ def _word_scores(lib: Library, fitted: Words, clips: LabelView) -> ModelRowsView
     )
 
 
-def _probability(surprise: float) -> float:
+def _probability(_model: LibraryWords, _asked: WordQuery, surprise: float) -> float:
     return math.exp(-surprise)
 
 
@@ -106,7 +126,7 @@ def _angle_score(model: LibraryWords, asked: WordQuery, angle: float) -> float:
     return float(model.angle_scores(np.array([angle]), asked)[0])
 
 
-def _probably_carries(
+def probably_carries(
     lib: Library, fitted: Words, clips: LabelView, words: Sequence[str]
 ) -> BoolArray:
     """(n,) whether a clip carries any of `words`; a clip without words counts if it is likely."""

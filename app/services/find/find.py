@@ -12,6 +12,7 @@ from app.search.example.by_example import SCALES, rank_by_example
 from app.search.example.distances import EPSILON, FEATURES, RHO
 from app.search.example.methods import LEARNED, Method
 from app.search.index.filters import as_filter
+from app.search.index.labels import LabelView
 from app.search.index.vector_index import VECTOR
 from app.search.ranking import cursor as cursors
 from app.search.ranking.ranking import Ranked, score
@@ -20,7 +21,13 @@ from app.services.find.by_metric import rank_by_metric
 from app.services.find.hits import HitPage, Hits, milliseconds_since
 from app.services.find.in_windows import find_in_windows
 from app.services.find.paging import Match, MatchPage, Paging
-from app.services.find.queries import RANKED_BY_IN_SEGMENTS, SCOPES, MotionQuery, WordQuery
+from app.services.find.queries import (
+    RANKED_BY_IN_SEGMENTS,
+    SCOPES,
+    WORD_MODES,
+    MotionQuery,
+    WordQuery,
+)
 from app.services.find.query import describe
 from app.services.library.library import Library
 from app.store.clips.filter import ClipFilter
@@ -35,7 +42,7 @@ def find_motion(lib: Library, query: MotionQuery) -> Hits:
     and ModelNotFitted for a metric that is not learned yet.
     """
     began = time.perf_counter()
-    method, clip_filter = _method(query.method), as_filter(query.filter)
+    method, clip_filter = motion_method(query.method), as_filter(query.filter)
     fields.limit(query.limit)
     if query.scope not in SCOPES:
         raise fields.bad_field("scope", f"must be one of {', '.join(SCOPES)}")
@@ -45,28 +52,28 @@ def find_motion(lib: Library, query: MotionQuery) -> Hits:
     return Hits(ranked_by.value, milliseconds_since(began), version, page.items, page.next)
 
 
-def find_words(lib: Library, query: WordQuery) -> Hits:
+def find_words(lib: Library, query: WordQuery, clips: LabelView | None = None) -> Hits:
     """Clips in order of how well words describe them.
 
-    Words that the model does not know are left out, and reported in the result.
+    clips: a view of the index, by default the present one. Words that the model does not know are
+    left out, and reported in the result.
     Raises BadField, ModelNotFitted.
     """
     # Imported here, so that a search by example does not load the modules of words.
-    from app.services.find.by_words import WORD_MODES, rank_by_words
+    from app.services.find.by_words import rank_by_words
 
     began = time.perf_counter()
     clip_filter = as_filter(query.filter)
-    texts = fields.queried_words(query.words)
-    if query.mode not in WORD_MODES:
-        raise fields.bad_field("mode", f"must be one of {', '.join(WORD_MODES)}")
+    texts, mode = fields.queried_words(query.words), word_mode(query.mode)
     fields.limit(query.limit)
     version = lib.index.catch_up(lib.store)
-    found = rank_by_words(lib, texts, query.mode, clip_filter)
-    question = cursors.digest("words", *texts, query.mode, clip_filter, found.model)
+    clips = clips or lib.index.state[1].labels
+    found = rank_by_words(lib, clips, texts, mode, clip_filter)
+    question = cursors.digest("words", *texts, mode, clip_filter, found.model)
     paging = Paging.at(query.cursor, question, query.clip_fields)
     page = _page(lib, found.ranking, paging, query.limit, found.to_score)
     return Hits(
-        method=query.mode,
+        method=mode,
         took_ms=milliseconds_since(began),
         library_version=version,
         items=page.items,
@@ -145,7 +152,15 @@ def _page(
     return paging.hits(lib, MatchPage(matches, page.more, ranking.anchor), to_score)
 
 
-def _method(value: Method | str) -> Method:
+def word_mode(mode: str) -> str:
+    """A mode of searches by words. Raises BadField."""
+    if mode not in WORD_MODES:
+        raise fields.bad_field("mode", f"must be one of {', '.join(WORD_MODES)}")
+    return mode
+
+
+def motion_method(value: Method | str) -> Method:
+    """A method of searches by example. Raises BadField."""
     try:
         return Method(value)
     except ValueError as problem:

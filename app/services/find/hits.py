@@ -10,13 +10,27 @@ from app.store.clips.record import ClipRecord
 
 
 @dataclass(frozen=True, slots=True)
+class PartScore:
+    """How likely one part of a query is true of a hit.
+
+    part: the part's place in the query (examples.0, file, words.1); is_against: whether the query
+    is against it; score: 0..1, the probability that the hit is like the example, or carries the
+    words.
+    """
+
+    part: str
+    is_against: bool
+    score: float
+
+
+@dataclass(frozen=True, slots=True)
 class Hit:
     """One clip, or one part of a clip, that was found.
 
     rank: from 1; score: 0..1, higher is closer, and lower for each larger distance; distance: its
     unit depends on the method; start, end: seconds, the part of the clip that was found (the whole
     clip with scope "clips"); time: seconds, of the nearest pose in a search by pose;
-    clip: with the requested fields.
+    clip: with the requested fields; parts: of a query of several parts.
     """
 
     rank: int
@@ -26,6 +40,7 @@ class Hit:
     end: float
     clip: ClipRecord | PartialClip
     time: float | None = None
+    parts: tuple[PartScore, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

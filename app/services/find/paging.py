@@ -34,11 +34,15 @@ class Match:
 
 @dataclass(frozen=True, slots=True)
 class MatchPage:
-    """The matches of one page, in order; more: whether others follow; anchor: see `Anchor`."""
+    """The matches of one page, in order; more: whether others follow.
+
+    anchor: see `Anchor`; scales: as in `Position`.
+    """
 
     matches: Sequence[Match]
     more: bool
     anchor: Anchor | None = None
+    scales: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +88,8 @@ class Paging:
         if not page.more:
             return HitPage(items, None)
         last = page.matches[-1]
-        position = Position(before + len(page.matches), last.distance, last.key, page.anchor)
+        rank = before + len(page.matches)
+        position = Position(rank, last.distance, last.key, page.anchor, page.scales)
         return HitPage(items, cursors.encode(position, self.question))
 
     def _clips(self, tx: Tx, ids: Collection[str]) -> Mapping[str, ClipRecord | PartialClip]:

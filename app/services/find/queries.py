@@ -1,4 +1,4 @@
-"""The queries of searches by example and by words."""
+"""The queries of searches by example, by words, and by several of both."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from app.services.find.query_source import QuerySource
 from app.store.clips.filter import ClipFilter
 
 DEFAULT_LIMIT = 10
+WORD_MODES = ("default", "cca")
 SCOPES = ("clips", "windows", "segments")
 RANKED_BY_IN_SEGMENTS = Method.VECTOR
 
@@ -52,5 +53,39 @@ class WordQuery:
     mode: str = "default"
     limit: int = DEFAULT_LIMIT
     filter: Filter = None
+    cursor: str | None = None
+    clip_fields: frozenset[str] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Example:
+    """A motion of a query of several parts.
+
+    part: its place in the query, as in `PartScore`; weight: above 0, relative to the other parts;
+    is_against: whether hits must not be like it.
+    """
+
+    part: str
+    source: QuerySource
+    weight: float = 1.0
+    is_against: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class ComposedQuery:
+    """A search by examples and words together; at least one of them must be for something.
+
+    Whole clips are compared. words, mode: as in `WordQuery`; the words together have weight 1; a
+    word with a minus leaves out the clips that carry it. include_self: whether clips that are
+    examples may be hits. The other fields are as in `MotionQuery`.
+    """
+
+    examples: Sequence[Example] = ()
+    words: Sequence[str] = ()
+    method: Method | str = Method.FUSED
+    mode: str = "default"
+    limit: int = DEFAULT_LIMIT
+    filter: Filter = None
+    include_self: bool = False
     cursor: str | None = None
     clip_fields: frozenset[str] | None = None

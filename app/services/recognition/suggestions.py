@@ -15,7 +15,8 @@ from app.services import fields
 from app.services.clips import labels
 from app.services.clips.catalogue import get_clip, update_clip
 from app.services.clips.labels import LabelCount
-from app.services.find.by_words import STATISTICS, WORD_MODES
+from app.services.find.by_words import STATISTICS
+from app.services.find.queries import WORD_MODES
 from app.services.library.library import Library
 from app.services.library.ready_clips import descriptors_of, ready_clip
 from app.store.clips.record import ClipRecord

@@ -19,7 +19,7 @@ class NotACursor(ValueError):
     """The text is no cursor, or a value in it has the wrong type."""
 
 
-def encode(values: Sequence[str | float | None]) -> str:
+def encode(values: Sequence[str | float | list[float] | None]) -> str:
     """A cursor that holds `values`."""
     # Without escapes: a long name in a script other than Latin would exceed MAX_CURSOR_LENGTH.
     content = json.dumps(values, separators=(",", ":"), ensure_ascii=False)

@@ -148,6 +148,7 @@ def test_with_keys_any_host_name_and_site_is_answered(
     [
         ("POST", "/v1/clips"),
         ("POST", "/v1/imports"),
+        ("POST", "/v1/search"),
         ("POST", "/v1/search/motion"),
         ("POST", "/v1/search/words"),
         ("POST", "/v1/recognize"),

@@ -14,6 +14,7 @@ from app.api.guard.admission import Admission, Kind
 from app.config import Settings
 
 HEAVY = {
+    "/v1/search",
     "/v1/search/motion",
     "/v1/search/pose",
     "/v1/search/words",

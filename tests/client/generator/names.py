@@ -18,6 +18,7 @@ METHODS = {
     "list_files": "jobs.files",
     "list_jobs": "jobs.list",
     "search_motion": "search.motion",
+    "search_parts": "search.parts",
     "search_pose": "search.pose",
     "search_words": "search.words",
     "recognize": "recognize",

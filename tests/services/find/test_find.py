@@ -12,9 +12,8 @@ from app.errors import BadField, ClipNotFound, ClipNotReady, EmptyFile, ModelNot
 from app.search.example.methods import Method
 from app.services.clips import catalogue as clips
 from app.services.find import find
-from app.services.find.by_words import WORD_MODES
 from app.services.find.hits import Hits
-from app.services.find.queries import MotionQuery, WordQuery
+from app.services.find.queries import WORD_MODES, MotionQuery, WordQuery
 from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
 from app.store.clips.record import ClipRecord

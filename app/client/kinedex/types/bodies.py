@@ -37,3 +37,19 @@ class Filter(TypedDict):
     not_folder: NotRequired[str | Sequence[str] | None]
     min_duration: NotRequired[float | None]
     max_duration: NotRequired[float | None]
+
+
+class SearchExample(TypedDict):
+    """A stored clip, or a part of it, that hits must be like, or must not be like.
+
+    start: Start of the part, seconds.
+    end: End of the part, seconds.
+    weight: How much it counts, relative to the others.
+    against: Whether hits must not be like it.
+    """
+
+    clip_id: str
+    start: NotRequired[float | None]
+    end: NotRequired[float | None]
+    weight: NotRequired[float]
+    against: NotRequired[bool]

@@ -1,0 +1,91 @@
+"""The words of a query of several parts: the clips they leave out, and how likely they are true."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.models.words.query import WordQuery
+from app.numerics.arrays import BoolArray, FloatArray, IntArray
+from app.search.index.labels import LabelView
+from app.search.ranking.ranking import IdArray
+from app.services.find.by_words import Words, measure, probabilities, probably_carries
+from app.services.find.hits import PartScore
+from app.services.library.library import Library
+
+
+@dataclass(frozen=True, slots=True)
+class WordParts:
+    """Words as the fitted model understands them.
+
+    texts: as they were asked for; asked: the meaning of all of them together; clips: of the index.
+    """
+
+    lib: Library
+    fitted: Words
+    texts: Sequence[str]
+    asked: WordQuery
+    mode: str
+    clips: LabelView
+
+    @classmethod
+    def of(cls, lib: Library, clips: LabelView, texts: Sequence[str], mode: str) -> WordParts:
+        """The words `texts`. Raises ModelNotFitted."""
+        fitted = lib.models.words(lib.store)
+        return cls(lib, fitted, texts, fitted.model.ask(texts), mode, clips)
+
+    def kept(self, mask: BoolArray) -> BoolArray:
+        """(n,) the clips in `mask` (n,) without those that carry a word with a minus."""
+        excluded = self.asked.excluded
+        if not excluded:
+            return mask
+        return mask & ~probably_carries(self.lib, self.fitted, self.clips, excluded)
+
+    def likely(self, mask: BoolArray) -> tuple[IntArray, FloatArray]:
+        """Rows (k,) of the clips in `mask` (n,) that the model knows, and (k,) probabilities.
+
+        They are the probabilities that a clip carries all words without a minus; there must be one
+        that the library knows. Raises NotEnoughLabels without a correlated space in mode "cca".
+        """
+        rows, distances = measure(self.lib, self.fitted, self.clips, mask, self.asked, self.mode)
+        return rows, probabilities(self.fitted.model, self.asked, self.mode, distances)
+
+    def scores(self, ids: IdArray) -> list[tuple[PartScore, ...]]:
+        """For each of the clips `ids` (m,), how likely it carries each text.
+
+        A text without a meaning in this library has no score.
+        """
+        numbers = self.clips.numbers(ids)
+        columns = [
+            (f"words.{place}", self._of_text(text, numbers))
+            for place, text in enumerate(self.texts)
+        ]
+        return [
+            tuple(
+                PartScore(part, is_against, score)
+                for part, found in columns
+                for is_against, values in found
+                if (score := values.get(int(number))) is not None
+            )
+            for number in numbers
+        ]
+
+    def _of_text(self, text: str, numbers: IntArray) -> list[tuple[bool, dict[int, float]]]:
+        """Whether a text is against something, and its probabilities by the clips' numbers.
+
+        The list is empty for a text without a meaning. A text counts as against something if it
+        has only words with a minus.
+        """
+        asked = self.fitted.model.ask([text])
+        if not asked.weights and not asked.excluded:
+            return []
+        mask = np.zeros(len(self.clips.ids), dtype=bool)
+        mask[numbers] = True
+        rows, distances = measure(self.lib, self.fitted, self.clips, mask, asked, self.mode)
+        likely = probabilities(self.fitted.model, asked, self.mode, distances)
+        is_against = not asked.weights
+        if is_against:  # the probability that the clip carries none of the words, until here
+            likely = 1.0 - likely
+        return [(is_against, dict(zip(rows.tolist(), likely.tolist(), strict=True)))]
