@@ -5,8 +5,9 @@ import type { Found } from "$/pages/search/send";
 /** A clip carries the words more likely than not from here on. */
 const LIKELY = 0.5;
 
-/** Ids of the hits: of words those that are likely, of an example the nearest that are asked for. */
+/** Ids of the hits: of words and parts those that are likely, of an example the nearest. */
 export function litIds({ kind }: Asked, { items }: Found): string[] {
-  const isLit = (score: number): boolean => kind !== "words" || score >= LIKELY;
+  const isLit = (score: number): boolean =>
+    (kind !== "words" && kind !== "parts") || score >= LIKELY;
   return items.filter(({ score }) => isLit(score)).map(({ clip }) => clip.id);
 }

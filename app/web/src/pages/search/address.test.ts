@@ -1,6 +1,17 @@
 import { expect, it } from "vitest";
 import { readQuery, writeQuery } from "$/core/query";
-import { askedFor, hitKey, isFiltered, query, scoped, SEARCH, UNFILTERED } from "./address";
+import {
+  askedFor,
+  examplesOf,
+  hitKey,
+  isAllAgainst,
+  isFiltered,
+  query,
+  scoped,
+  SEARCH,
+  UNFILTERED,
+  withExamples,
+} from "./address";
 
 const read = (address: string) => readQuery(SEARCH, new URLSearchParams(address));
 const after = (address: string, changes: Parameters<typeof writeQuery<typeof SEARCH>>[2]) =>
@@ -18,8 +29,8 @@ it("words are asked for with their signs and the filters", () => {
   });
 });
 
-it("a clip or a part of it is asked for before words", () => {
-  expect(askedFor(read("clip=c1&q=wave&start=0.5&end=2&scope=windows&method=dtw"))).toEqual({
+it("a clip or a part of it is asked for, also by older addresses", () => {
+  expect(askedFor(read("clip=c1&start=0.5&end=2&scope=windows&method=dtw"))).toEqual({
     kind: "clip",
     body: {
       clip_id: "c1",
@@ -30,6 +41,60 @@ it("a clip or a part of it is asked for before words", () => {
       limit: 24,
     },
   });
+  expect(askedFor(read("ex=c1@0.5-2"))).toEqual(askedFor(read("clip=c1&start=0.5&end=2")));
+});
+
+it("several parts are asked for together", () => {
+  expect(askedFor(read("clip=c1&start=0.5&ex=-c2@1-2&ex=@&q=wave&q=-left&task=walk"))).toEqual({
+    kind: "parts",
+    name: "",
+    body: {
+      examples: [
+        { clip_id: "c1", start: 0.5, against: false },
+        { clip_id: "c2", start: 1, end: 2, against: true },
+      ],
+      words: ["wave", "-left"],
+      method: "fused",
+      mode: "default",
+      limit: 24,
+      filter: { task: ["walk"] },
+    },
+  });
+});
+
+it("a file among several parts keeps its part", () => {
+  expect(askedFor(read("file=a.bvh&ex=c1&start=1"))).toMatchObject({
+    kind: "parts",
+    name: "a.bvh",
+    body: { examples: [{ clip_id: "c1", against: false }], start: 1 },
+  });
+});
+
+it("nothing is asked for where all is against something", () => {
+  for (const address of ["ex=-c1", "ex=-c1&q=-wave", "ex=-c1&ex=-c2"]) {
+    expect(askedFor(read(address))).toBeNull();
+    expect(isAllAgainst(read(address))).toBe(true);
+  }
+  for (const address of ["", "q=-wave", "ex=-c1&q=wave", "ex=-c1&file=a.bvh"]) {
+    expect(isAllAgainst(read(address))).toBe(false);
+  }
+});
+
+it("one example alone has the address of older links, several are listed", () => {
+  const [c1, c2] = examplesOf(read("ex=c1@1-2&ex=-c2"));
+  const to = (address: string, examples: readonly (typeof c1 | undefined)[]) =>
+    after(
+      address,
+      withExamples(
+        read(address),
+        examples.filter((one) => one !== undefined),
+      ),
+    );
+  expect(to("ex=-c2&hit=c3&n=48", [c1])).toBe("clip=c1&start=1&end=2");
+  expect(to("clip=c1&start=1&end=2", [c1, c2])).toBe("ex=c1%401-2&ex=-c2");
+  expect(to("clip=c1&pose=1.5", [c2])).toBe("ex=-c2");
+  expect(to("file=a.bvh&start=1&ex=-c2", [c1])).toBe("ex=c1%401-2&file=a.bvh&start=1");
+  expect(to("clip=c1&start=1&end=2", [])).toBe("");
 });
 
 it("a pose of a clip is asked for before its motion", () => {

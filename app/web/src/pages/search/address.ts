@@ -1,7 +1,9 @@
 /** The search page's state in its address, and what it asks the API for. */
 import type { Schemas } from "$/api/client";
-import { choice, list, number, text, type Values } from "$/core/query";
+import { choice, flag, list, number, text, type Values } from "$/core/query";
 import { PLAYER } from "$/player/view";
+import { MAX_EXAMPLES, readExample, writeExample, type Example } from "./parts";
+import { wordOf } from "./words";
 
 export const METHODS = {
   fused: "Fused",
@@ -41,8 +43,10 @@ export const SEARCH = {
   /** Words; one with a minus before it leaves out the clips that carry it. */
   q: list(),
   mode: choice(Object.keys(MODES) as Mode[], "default"),
-  /** Id of the clip that is the query. */
+  /** Id of the clip that is the query, alone or with the parts below. */
   clip: text(),
+  /** Further examples, see `parts.ts`. */
+  ex: list(),
   /** Name of the file that is the query; an address cannot hold the file itself. */
   file: text(),
   /** The part of the clip or the file, seconds. */
@@ -58,6 +62,8 @@ export const SEARCH = {
   n: number(PAGE_SIZE, 1, MAX_HITS),
   /** Key of the hit that is in the player. */
   hit: text(),
+  /** Whether each hit shows what each part of the query says. */
+  why: flag(),
 };
 
 export type SearchValues = Values<typeof SEARCH>;
@@ -80,6 +86,20 @@ interface WordOptions extends Options {
   readonly words: readonly string[];
   readonly mode: Mode;
 }
+interface PartsOptions extends Options {
+  readonly examples: readonly ExampleOptions[];
+  readonly words: readonly string[];
+  readonly method: Method;
+  readonly mode: Mode;
+  readonly start?: number;
+  readonly end?: number;
+}
+interface ExampleOptions {
+  readonly clip_id: string;
+  readonly against: boolean;
+  readonly start?: number;
+  readonly end?: number;
+}
 interface PoseOptions extends Options {
   readonly clip_id: string;
   readonly time: number;
@@ -88,26 +108,98 @@ export type Asked =
   | { readonly kind: "pose"; readonly body: PoseOptions }
   | { readonly kind: "words"; readonly body: WordOptions }
   | { readonly kind: "clip"; readonly body: MotionOptions & { readonly clip_id: string } }
-  | { readonly kind: "file"; readonly name: string; readonly body: MotionOptions };
+  | { readonly kind: "file"; readonly name: string; readonly body: MotionOptions }
+  /** Several parts; name: of the file among them, empty without one. */
+  | { readonly kind: "parts"; readonly name: string; readonly body: PartsOptions };
 
-/** What the address asks for; null where it asks for nothing. A motion goes before words. */
+/** What the address asks for; null where it asks for nothing, or where all is against something. */
 export function askedFor(values: SearchValues): Asked | null {
-  if (values.clip && values.pose !== null) {
+  if (isPose(values)) {
     return { kind: "pose", body: { clip_id: values.clip, time: values.pose, ...common(values) } };
   }
-  if (values.clip) return { kind: "clip", body: { clip_id: values.clip, ...motion(values) } };
-  if (values.file) return { kind: "file", name: values.file, body: motion(values) };
+  const examples = examplesOf(values);
+  const [one] = examples;
+  const parts = examples.length + (values.file ? 1 : 0) + (values.q.length > 0 ? 1 : 0);
+  if (parts > 1) return isForSomething(values) ? severalParts(values, examples) : null;
+  if (one) {
+    return one.isAgainst ? null : { kind: "clip", body: { ...example(one), ...motion(values) } };
+  }
+  if (values.file) {
+    const body = { ...partOf(values), ...motion(values) };
+    return { kind: "file", name: values.file, body };
+  }
   if (values.q.length === 0) return null;
   const { mode } = values;
   return { kind: "words", body: { words: [...values.q], mode, ...common(values) } };
+}
+
+function isPose(values: SearchValues): values is SearchValues & { pose: number } {
+  return values.clip !== "" && values.pose !== null;
+}
+
+/** All examples but the file: that of older addresses first. */
+export function examplesOf(values: SearchValues): readonly Example[] {
+  if (isPose(values)) return [];
+  const { clip: id, start, end } = values;
+  const first = id ? [{ id, start, end, isAgainst: false }] : [];
+  const others = values.ex.map(readExample).filter((one) => one !== null);
+  return [...first, ...others].slice(0, MAX_EXAMPLES);
+}
+
+/** The changes that give the query these examples; the file keeps its part. */
+export function withExamples(
+  values: SearchValues,
+  examples: readonly Example[],
+): Partial<SearchValues> {
+  const [one, ...more] = examples;
+  const changes = { ...OTHER_HITS, pose: null, ...(values.clip && { start: null, end: null }) };
+  const isAlone = one && !one.isAgainst && more.length === 0 && !values.file;
+  // What is one motion alone has its own fields: other pages link to them.
+  if (isAlone) return { ...changes, clip: one.id, start: one.start, end: one.end, ex: [] };
+  return { ...changes, clip: "", ex: examples.map(writeExample) };
+}
+
+/** Whether the query has parts, and they are all against something. */
+export function isAllAgainst(values: SearchValues): boolean {
+  return examplesOf(values).length > 0 && !isForSomething(values);
+}
+
+function isForSomething(values: SearchValues): boolean {
+  return (
+    values.file !== "" ||
+    examplesOf(values).some(({ isAgainst }) => !isAgainst) ||
+    values.q.some((word) => !wordOf(word).isMinus)
+  );
+}
+
+function severalParts(values: SearchValues, examples: readonly Example[]): Asked {
+  const { q, method, mode, file } = values;
+  const body = {
+    examples: examples.map((one) => ({ ...example(one), against: one.isAgainst })),
+    words: [...q],
+    method,
+    mode,
+    ...(file && partOf(values)),
+    ...common(values),
+  };
+  return { kind: "parts", name: file, body };
+}
+
+function example(one: Example): Omit<ExampleOptions, "against"> {
+  return { clip_id: one.id, ...partOf(one) };
+}
+
+function partOf({ start, end }: { start: number | null; end: number | null }): {
+  start?: number;
+  end?: number;
+} {
+  return { ...(start !== null && { start }), ...(end !== null && { end }) };
 }
 
 function motion(values: SearchValues): MotionOptions {
   return {
     method: values.method,
     scope: values.scope,
-    ...(values.start !== null && { start: values.start }),
-    ...(values.end !== null && { end: values.end }),
     ...common(values),
   };
 }
@@ -125,14 +217,8 @@ export function isFiltered(values: SearchValues): boolean {
 
 export const UNFILTERED: Partial<SearchValues> = { person: [], task: [], word: [] };
 
-/** What another query sets: its hits are others, and a part belongs to one motion. */
-const OTHER_QUERY: Partial<SearchValues> = {
-  q: [],
-  clip: "",
-  file: "",
-  start: null,
-  end: null,
-  pose: null,
+/** What another query sets: its hits are others. */
+const OTHER_HITS: Partial<SearchValues> = {
   n: PAGE_SIZE,
   hit: "",
   t: 0,
@@ -140,9 +226,26 @@ const OTHER_QUERY: Partial<SearchValues> = {
   to: null,
 };
 
+/** A part belongs to one motion. */
+const OTHER_QUERY: Partial<SearchValues> = {
+  ...OTHER_HITS,
+  q: [],
+  clip: "",
+  ex: [],
+  file: "",
+  start: null,
+  end: null,
+  pose: null,
+};
+
 /** The changes that make something else the query; filters and methods stay. */
 export function query(given: Partial<SearchValues>): Partial<SearchValues> {
   return { ...OTHER_QUERY, ...given };
+}
+
+/** The changes that add words or a file to the query, or take them away. */
+export function changed(given: Pick<Partial<SearchValues>, "q" | "file">): Partial<SearchValues> {
+  return { ...OTHER_HITS, pose: null, ...given };
 }
 
 /** The changes for another scope: its default method where it has not the present one. */
