@@ -44,6 +44,7 @@ def _addresses(clip_id: str) -> Iterator[tuple[str, str]]:
     yield "models-words", "/models?tab=words"
     yield "search-words", "/search?q=wave&q=-left"
     yield "search-clip", f"/search?clip={clip_id}&start=0.5&end=2&scope=windows"
+    yield "search-parts", f"/search?ex={clip_id}&ex=-{clip_id}@0.5-1&q=wave&q=-left&why=1"
     for name in PAGE_NAMES:
         if name != "clips":
             yield name, f"/{name}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 from urllib.parse import parse_qs, urlsplit
 
 import pytest
@@ -35,6 +35,22 @@ def hits(page: Page) -> Locator:
 
 def box(page: Page) -> Locator:
     return page.get_by_role("combobox", name="Words to search for")
+
+
+def ask_for(hit: Locator, role: Literal["button", "link"], name: str) -> None:
+    """Choose in a hit's menu."""
+    hit.get_by_role("button", name=re.compile("^What is like")).click()
+    hit.get_by_role(role, name=name).click()
+
+
+def play(hit: Locator) -> None:
+    hit.get_by_role("button", name=re.compile("^Play")).click()
+
+
+def chips(page: Page) -> Locator:
+    """The motions among the parts of the query."""
+    search = page.get_by_role("search", name="Motions")
+    return search.get_by_role("group").filter(has=page.locator(".picture"))
 
 
 def player(page: Page) -> Locator:
@@ -78,7 +94,7 @@ def test_back_and_forward_keep_what_was_asked(page: Page) -> None:
     expect(hits(page).filter(has_text="ada")).not_to_have_count(0)
     expect(hits(page).filter(has_not_text="ada")).to_have_count(0)
     page.keyboard.press("Escape")
-    hits(page).first.get_by_role("link", name=re.compile("^More like")).click()
+    ask_for(hits(page).first, "link", "Only like this")
     expect(page.get_by_role("region", name="The motion that is searched with")).to_be_visible()
     assert query_of(page).keys() == {"clip"}
     page.go_back()
@@ -96,7 +112,7 @@ def test_more_like_a_clip_plays_in_step_with_it(page: Page, kick: dict[str, Any]
     page.get_by_role("link", name="More like this").click()
     expect(hits(page)).to_have_count(STORED - 1)
     expect(hits(page).first).to_contain_text("kick")
-    hits(page).first.get_by_role("button").click()
+    play(hits(page).first)
     expect(player(page)).to_have_attribute("data-ready", "")
     expect(player(page).locator(".head")).to_have_count(2)
     expect(player(page).locator(".head").first).to_have_text(kick["name"])
@@ -122,7 +138,7 @@ def test_parts_of_clips_are_found_with_their_times(page: Page, kick: dict[str, A
         "end": ["2"],
         "scope": ["windows"],
     }
-    hits(page).first.get_by_role("button").click()
+    play(hits(page).first)
     expect(player(page).locator(".head")).to_have_count(2)
     expect(page).to_have_url(re.compile("hit="))
 
@@ -144,7 +160,7 @@ def test_a_pose_is_found_in_other_clips(page: Page, kick: dict[str, Any]) -> Non
     page.get_by_role("link", name="Find this pose").click()
     expect(hits(page).first).to_contain_text(re.compile(r"at \d+\.\d\d s"))
     expect(page.get_by_text("A pose of")).to_be_visible()
-    hits(page).first.get_by_role("button").click()
+    play(hits(page).first)
     expect(player(page).locator(".head")).to_have_count(2)
     expect(page).to_have_url(re.compile(r"[?&]t="))
     page.reload()
@@ -161,6 +177,10 @@ def test_a_file_is_searched_with_and_asked_for_again(page: Page, tmp_path: Path)
     path.write_bytes(clip.content)
     page.goto("/search?q=wave")
     page.get_by_label("File to search with").first.set_input_files(path)
+    expect(page.get_by_role("group", name="query.bvh")).to_be_visible()
+    expect(page.get_by_role("button", name="What each part says")).to_be_visible()
+    expect(hits(page).first).to_contain_text("wave")
+    page.get_by_role("button", name="Remove wave").click()
     expect(page.get_by_text("It is not stored")).to_be_visible()
     expect(hits(page).first).to_contain_text("kick")
     page.go_back()
@@ -169,6 +189,53 @@ def test_a_file_is_searched_with_and_asked_for_again(page: Page, tmp_path: Path)
     expect(hits(page).first).to_contain_text("kick")
     page.reload()
     expect(page.get_by_role("button", name="Choose the file again")).to_be_visible()
+
+
+def test_hits_become_parts_that_are_for_and_against(page: Page) -> None:
+    page.goto("/search?q=wave")
+    name = hits(page).first.locator(".name").inner_text()
+    ask_for(hits(page).first, "button", "More like this")
+    expect(chips(page)).to_have_count(1)
+    expect(page.get_by_role("group", name=name, exact=True)).to_be_visible()
+    assert query_of(page).keys() == {"q", "clip"}
+    expect(hits(page)).to_have_count(STORED - 1)
+    ask_for(hits(page).nth(1), "button", "Less like this")
+    expect(chips(page)).to_have_count(2)
+    expect(page).to_have_url(re.compile(r"ex=clip_\w+&ex=-clip_\w+"))
+    expect(
+        page.get_by_role("status").filter(has_text=re.compile(r"fused · \d+ ms"))
+    ).to_be_visible()
+    page.get_by_role("button", name="What each part says").click()
+    said = hits(page).first.get_by_role("list", name="What each part says").get_by_role("listitem")
+    expect(said).to_have_count(3)
+    expect(said.nth(0)).to_have_text(re.compile(rf"{re.escape(name)}\s+[01]\.\d\d"))
+    expect(said.nth(1)).to_contain_text("Against:")
+    expect(said.nth(2)).to_have_text(re.compile(r"wave\s+[01]\.\d\d"))
+    page.reload()
+    expect(said).to_have_count(3)
+    expect(chips(page)).to_have_count(2)
+    play(hits(page).first)
+    expect(player(page).locator(".head")).to_have_count(2)
+
+
+def test_parts_change_their_sign_and_go_by_keyboard(page: Page, kick: dict[str, Any]) -> None:
+    page.goto(f"/search?clip={kick['id']}&start=0.5&end=2&q=wave")
+    expect(chips(page)).to_contain_text("0.5–2 s")
+    expect(hits(page).first).to_be_visible()
+    page.get_by_role("button", name=re.compile("^More like")).press("Enter")
+    expect(page.get_by_role("button", name=re.compile("^Less like"))).to_be_visible()
+    assert query_of(page) == {"q": ["wave"], "ex": [f"-{kick['id']}@0.5-2"]}
+    expect(hits(page).first).to_contain_text("wave")
+    page.get_by_role("button", name="Remove wave").press("Enter")
+    expect(page.get_by_role("alert").filter(has_text="against something")).to_be_visible()
+    expect(hits(page)).to_have_count(0)
+    page.get_by_role("button", name=re.compile("^Less like")).press("Enter")
+    expect(page.get_by_role("region", name="The motion that is searched with")).to_be_visible()
+    expect(page.get_by_label("From second")).to_have_value("0.5")
+    assert query_of(page) == {"clip": [kick["id"]], "start": ["0.5"], "end": ["2"]}
+    page.go_back()
+    page.get_by_role("button", name=f"Remove {kick['name']}").press("Enter")
+    expect(page.get_by_role("heading", name="What do you look for?")).to_be_visible()
 
 
 def test_what_cannot_be_searched_is_said(browser: Browser, demo_service: Live) -> None:
@@ -186,7 +253,8 @@ def test_it_has_no_serious_fault(
     size: tuple[int, int],
 ) -> None:
     with opened(browser, demo_service.url, size=size, scheme=scheme) as page:
-        for address in ("/search", "/search?q=wave&q=-kick", f"/search?clip={kick['id']}"):
+        parts = f"/search?ex={kick['id']}&ex=-{kick['id']}@0.5-1&q=wave&q=-bow&why=1"
+        for address in ("/search", "/search?q=wave&q=-kick", f"/search?clip={kick['id']}", parts):
             page.goto(address)
             shown = hits(page).first if "?" in address else page.get_by_text("What do you")
             expect(shown).to_be_visible()
