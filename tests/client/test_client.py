@@ -11,6 +11,7 @@ import pytest
 
 from app.demo import DemoClip
 from kinedex import JobFailed, Kinedex, KinedexError, Unreachable, as_json
+from kinedex.types.bodies import SearchExample
 from tests.live import NO_TLS, Live
 
 CLIPS = 12
@@ -76,6 +77,21 @@ def test_searches_by_clip_file_words_and_pose(client: Kinedex, tmp_path: Path) -
     assert client.search.pose(clip_id=clip, time=0.5, limit=1).items
     assert client.recognize(clip).task.label == "kick"
     assert client.recognize(file=path, known_task="kick").person.label == "ada"
+
+
+def test_a_search_takes_several_parts(client: Kinedex, tmp_path: Path) -> None:
+    clip = _kick(client)
+    examples: list[SearchExample] = [
+        {"clip_id": clip},
+        {"clip_id": clip, "end": 1, "against": True},
+    ]
+    found = client.search.parts(examples=examples, words=["kick"], limit=2)
+    names = ["examples.0", "examples.1", "words.0"]
+    assert [part.part for part in found[0].parts] == names
+    path = tmp_path / "query.bvh"
+    path.write_bytes(client.clips.file(clip))
+    found = client.search.parts(examples=examples, words=["kick"], file=path, limit=2)
+    assert [part.part for part in found[0].parts] == [*names[:2], "file", *names[2:]]
 
 
 def test_motions_are_arrays(client: Kinedex) -> None:

@@ -48,7 +48,10 @@ def _checked(query: ComposedQuery) -> ComposedQuery:
     """The query with its values checked and parsed. Raises BadField."""
     method, mode = find.motion_method(query.method), find.word_mode(query.mode)
     fields.limit(query.limit)
-    words = fields.queried_words(query.words) if query.words else ()
+    # A blank text stays, so that the others keep their places in the query.
+    words = tuple(fields.text("words", text) or "" for text in query.words)
+    if words:
+        fields.queried_words(words)
     if len(query.examples) > MAX_EXAMPLES:
         raise fields.bad_field("examples", f"must not be more than {MAX_EXAMPLES}")
     for example in query.examples:
@@ -56,7 +59,7 @@ def _checked(query: ComposedQuery) -> ComposedQuery:
             message = f"must be above 0 and at most {MAX_WEIGHT:g}"
             raise fields.bad_field(f"{example.part}.weight", message)
     is_for = any(not example.is_against for example in query.examples)
-    if not is_for and all(text.startswith(MINUS) for text in words):
+    if not is_for and all(text.startswith(MINUS) for text in words if text):
         message = "at least one example, or a word without a minus, must be for something"
         raise BadField(
             "The query is for nothing.",

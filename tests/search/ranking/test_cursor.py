@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.errors import BadField
-from app.search.ranking.cursor import MAX_RANK, Position, decode, digest, encode
+from app.search.ranking.cursor import MAX_RANK, Anchor, Position, decode, digest, encode
 
 QUESTION = digest("clip_1", "fused")
 
@@ -20,9 +20,13 @@ QUESTION = digest("clip_1", "fused")
     rank=st.integers(0, 10**9),
     distance=st.floats(0, 1e9),
     clip_id=st.text(max_size=40),
+    anchor=st.none() | st.builds(Anchor, st.floats(0, 1e9), st.just("clip"), st.none()),
+    scales=st.lists(st.floats(1e-9, 1e9), max_size=40).map(tuple),
 )
-def test_a_cursor_contains_its_position(rank: int, distance: float, clip_id: str) -> None:
-    position = Position(rank, distance, clip_id)
+def test_a_cursor_contains_its_position(
+    rank: int, distance: float, clip_id: str, anchor: Anchor | None, scales: tuple[float, ...]
+) -> None:
+    position = Position(rank, distance, clip_id, anchor, scales)
     assert decode(encode(position, QUESTION), QUESTION) == position
 
 
@@ -53,6 +57,9 @@ def test_any_other_text_is_refused(text: str) -> None:
         [QUESTION, 10**400, 0.5, "a"],
         [QUESTION, 1, True, "a"],
         [QUESTION, 1, 0.5, "\ud800"],
+        [QUESTION, 1, 0.5, "a", [0.0]],
+        [QUESTION, 1, 0.5, "a", ["x"]],
+        [QUESTION, 1, 0.5, "a", [float("inf")]],
         [QUESTION, 1, 0.5, "a", 10**400, "a", None],
         [QUESTION, 1, 0.5, "a", 0.5, "a", -(10**400)],
         {"a": 1},

@@ -200,6 +200,12 @@ def test_examples_are_hits_only_on_request(ready_library: Library, clip_of: Find
     assert {hit.clip.id for hit in with_them.items[:2]} == {clip.id for clip in ours}
 
 
+def test_a_blank_word_shifts_no_other(ready_library: Library, clip_of: FindClip) -> None:
+    query = ComposedQuery(_like(clip_of("ada", "walk")), [" ", "wave"], limit=1)
+    (hit,) = find_by_parts(ready_library, query).items
+    assert [part.part for part in hit.parts] == ["examples.0", "words.1"]
+
+
 def test_a_word_that_the_library_does_not_know_is_reported(
     ready_library: Library, clip_of: FindClip
 ) -> None:
