@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -19,7 +20,7 @@ from app.services import fields
 from app.services.find import find
 from app.services.find.hits import Hit, Hits, PartScore, milliseconds_since
 from app.services.find.paging import Match, MatchPage, Paging
-from app.services.find.queries import ComposedQuery, MotionQuery, WordQuery
+from app.services.find.queries import ComposedQuery, Example, MotionQuery, WordQuery
 from app.services.find.query_parts import QueryParts
 from app.services.find.word_parts import WordParts
 from app.services.library.library import Library
@@ -52,20 +53,24 @@ def _checked(query: ComposedQuery) -> ComposedQuery:
     words = tuple(fields.text("words", text) or "" for text in query.words)
     if words:
         fields.queried_words(words)
-    if len(query.examples) > MAX_EXAMPLES:
-        raise fields.bad_field("examples", f"must not be more than {MAX_EXAMPLES}")
     for example in query.examples:
         if not (math.isfinite(example.weight) and 0.0 < example.weight <= MAX_WEIGHT):
             message = f"must be above 0 and at most {MAX_WEIGHT:g}"
             raise fields.bad_field(f"{example.part}.weight", message)
-    is_for = any(not example.is_against for example in query.examples)
-    if not is_for and all(text.startswith(MINUS) for text in words if text):
-        message = "at least one example, or a word without a minus, must be for something"
-        raise BadField(
-            "The query is for nothing.",
-            places=[Place("examples", message), Place("words", message)],
-        )
+    if len(query.examples) > MAX_EXAMPLES:
+        raise fields.bad_field("examples", f"must not be more than {MAX_EXAMPLES}")
+    _check_is_for(query.examples, words)
     return replace(query, method=method, mode=mode, words=words, filter=as_filter(query.filter))
+
+
+def _check_is_for(examples: Sequence[Example], words: Sequence[str]) -> None:
+    """Raises BadField for a query that is only against something."""
+    is_for = any(not example.is_against for example in examples)
+    if is_for or any(text and not text.startswith(MINUS) for text in words):
+        return
+    message = "at least one example, or a word without a minus, must be for something"
+    places = [Place("examples", message), Place("words", message)]
+    raise BadField("The query is for nothing.", places=places)
 
 
 def _by_example(lib: Library, query: ComposedQuery) -> Hits:
