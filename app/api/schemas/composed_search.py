@@ -176,9 +176,10 @@ class ComposedHit(Hit):
     score: float = Field(
         ge=0,
         le=1,
-        description="Weighted geometric mean of the probabilities that each part for something is "
-        "true of the clip, and each part against something is not. One part alone has the score of "
-        "its own search.",
+        description="Weighted geometric mean of the probabilities that the clip is of the kind of "
+        "the examples for something (the mean of their log odds), that it carries the words, and "
+        "that it is not like each example against something. One part alone has the score of its "
+        "own search.",
     )
     distance: float = Field(
         description="-ln(score), and a constant more behind the 300 clips that are compared "

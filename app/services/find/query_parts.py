@@ -170,7 +170,7 @@ class QueryParts:
 
 
 def _part(example: Example) -> Part:
-    return Part(example.weight, example.is_against)
+    return Part(example.weight, example.is_against, is_pooled=not example.is_against)
 
 
 def _described(lib: Library, example: Example, names: tuple[str, ...]) -> QueryDescriptors:

@@ -20,7 +20,7 @@ from tests.search.walking import walk
 
 COUNT = 350
 CURVE = Curve(0.5, 3.0)
-PARTS = [Part(), Part(2.0), Part(0.5, is_against=True)]
+PARTS = [Part(is_pooled=True), Part(2.0, is_pooled=True), Part(0.5, is_against=True)]
 
 
 class Clips:
@@ -61,11 +61,14 @@ class Clips:
         """The order of the shortlist, then of the others, by one formula and one sort each."""
 
         def distance(number: int, distances: FloatArray) -> float:
-            total = -math.log(self.words[number])
-            for part, own in zip(self.parts, distances[:, number], strict=True):
-                likely = 1.0 / (1.0 + (own / 0.5) ** 3.0)
-                total -= part.weight * math.log(1.0 - likely if part.is_against else likely)
-            return total / (sum(part.weight for part in self.parts) + 1.0)
+            first, second, third = (
+                1.0 / (1.0 + (own / 0.5) ** 3.0) for own in distances[:, number]
+            )
+            odds = math.log(first / (1.0 - first)) + 2.0 * math.log(second / (1.0 - second))
+            pool = 1.0 / (1.0 + math.exp(-odds / 3.0))
+            return -(
+                3.0 * math.log(pool) + 0.5 * math.log(1.0 - third) + math.log(self.words[number])
+            )
 
         first = sorted(range(COUNT), key=lambda number: distance(number, self.fast))
         shortlist, others = first[:SHORTLIST], first[SHORTLIST:]

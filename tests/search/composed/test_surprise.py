@@ -12,46 +12,59 @@ from hypothesis import strategies as st
 from app.search.composed.surprise import CERTAINTY, Part, mean_surprise, surprise
 
 PROBABILITY = st.floats(0.0, 1.0)
-PARTS = st.lists(
-    st.tuples(st.floats(0.01, 100.0), st.booleans(), PROBABILITY), min_size=1, max_size=6
-)
+KINDS = st.sampled_from(["pooled", "for", "against"])
+PARTS = st.lists(st.tuples(st.floats(0.01, 100.0), KINDS, PROBABILITY), min_size=1, max_size=6)
+Parts = list[tuple[float, str, float]]
 
 
-def _twin(parts: list[tuple[float, bool, float]]) -> float:
+def _twin(parts: Parts) -> float:
     """The formula of the docstring, one part after the other."""
-    total, product = 0.0, 0.0
-    for weight, is_against, likely in parts:
-        kept = min(max(likely, CERTAINTY), 1.0 - CERTAINTY)
-        product -= weight * math.log(1.0 - kept if is_against else kept)
-        total += weight
-    return product / total
+    total = sum(weight for weight, *_ in parts)
+    kept = [
+        (weight, kind, min(max(likely, CERTAINTY), 1.0 - CERTAINTY))
+        for weight, kind, likely in parts
+    ]
+    odds, pooled, found = 0.0, 0.0, 0.0
+    for weight, kind, likely in kept:
+        if kind == "pooled":
+            odds += weight * math.log(likely / (1.0 - likely))
+            pooled += weight
+        else:
+            found -= weight * math.log(likely if kind == "for" else 1.0 - likely)
+    if pooled:
+        found += pooled * math.log(1.0 + math.exp(-odds / pooled))
+    return found / total
 
 
-def _mean(parts: list[tuple[float, bool, float]]) -> float:
-    given = [Part(weight, is_against) for weight, is_against, _ in parts]
+def _mean(parts: Parts) -> float:
+    given = [
+        Part(weight, is_against=kind == "against", is_pooled=kind == "pooled")
+        for weight, kind, _ in parts
+    ]
     return float(mean_surprise(given, [np.array([likely]) for *_, likely in parts])[0])
 
 
 @given(PARTS)
-def test_it_is_the_mean_of_the_surprises(parts: list[tuple[float, bool, float]]) -> None:
+def test_it_is_the_mean_of_the_surprises(parts: Parts) -> None:
     assert _mean(parts) == pytest.approx(_twin(parts), rel=1e-4, abs=1e-9)
 
 
 @given(PARTS, st.floats(0.1, 10.0))
-def test_only_the_proportion_of_weights_counts(
-    parts: list[tuple[float, bool, float]], factor: float
-) -> None:
-    scaled = [(factor * weight, is_against, likely) for weight, is_against, likely in parts]
+def test_only_the_proportion_of_weights_counts(parts: Parts, factor: float) -> None:
+    scaled = [(factor * weight, kind, likely) for weight, kind, likely in parts]
     assert _mean(scaled) == pytest.approx(_mean(parts))
 
 
 @given(PARTS, PROBABILITY, PROBABILITY)
 def test_more_of_what_is_wanted_never_makes_a_clip_worse(
-    parts: list[tuple[float, bool, float]], one: float, other: float
+    parts: Parts, one: float, other: float
 ) -> None:
     low, high = sorted((one, other))
-    assert _mean([*parts, (1.0, False, high)]) <= _mean([*parts, (1.0, False, low)])
-    assert _mean([*parts, (1.0, True, high)]) >= _mean([*parts, (1.0, True, low)])
+    slack = 1e-9  # of rounding
+    for kind in ("pooled", "for"):
+        assert _mean([*parts, (1.0, kind, high)]) <= _mean([*parts, (1.0, kind, low)]) + slack
+    against = _mean([*parts, (1.0, "against", high)])
+    assert against >= _mean([*parts, (1.0, "against", low)]) - slack
 
 
 @pytest.mark.parametrize("is_against", [False, True])

@@ -30,9 +30,9 @@ class PartScore(Record):
 class ComposedHit(Record):
     """One hit of a search by several parts.
 
-    score: Weighted geometric mean of the probabilities that each part for something is true of
-    the clip, and each part against something is not. One part alone has the score of its own
-    search.
+    score: Weighted geometric mean of the probabilities that the clip is of the kind of the
+    examples for something (the mean of their log odds), that it carries the words, and that it
+    is not like each example against something. One part alone has the score of its own search.
     distance: -ln(score), and a constant more behind the 300 clips that are compared exactly.
     One part alone has the distance of its own search.
     start: Start of the found part, seconds from the start of the clip. 0 with scope clips.
