@@ -13,7 +13,7 @@ sum. A weight multiplies the surprise of its part; that of the pool is the sum o
 The sum is divided by the sum of the weights. So a distance does not grow with the number of parts,
 and exp(-distance), the geometric mean of the probabilities, is a score that people can compare.
 
-Measured on the trials of `tests/bench/test_composed.py`, drawn with another seed: two examples of
+Measured on trials like those of `tests/bench/test_composed.py`, 200 of each kind: two examples of
 one task find it with P@10 .72; with their product .70, with one of them .64. An example and a word
 find what is both with P@R .77; with the sum of their log odds .58, because that pays for the word
 without end, however far the example is.
