@@ -92,6 +92,7 @@ AudioClipId = Annotated[str, _id("a clip with a recording", "AUDIO_CLIP_ID")]
 JobId = Annotated[str, _id("a job", "JOB_ID")]
 PairId = Annotated[str, _id("a pair", "PAIR_ID")]
 ModelId = Annotated[str, _id("a recognizer", "MODEL_ID")]
+EvaluationId = Annotated[str, _id("an evaluation", "EVALUATION_ID")]
 WebhookId = Annotated[str, _id("a webhook", "WEBHOOK_ID")]
 
 
