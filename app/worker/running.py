@@ -33,6 +33,9 @@ _log = logging.getLogger(__name__)
 RETRY_DELAY_S = 5.0
 """Time before an import, a fit or an evaluation is tried again after the store failed."""
 
+MAX_PROGRESS = 0.99
+"""The largest completed share of an evaluation that still runs."""
+
 
 class RunningJob(Protocol):
     """A claimed job whose work has begun."""
@@ -156,7 +159,9 @@ class RunningEvaluation:
         done, total = self.file.read()
         if not total:
             return None, f"judging {self.kind.value}"
-        return done / total, f"judging {self.kind.value}: {done:,} of {total:,} steps"
+        # After the last step the result is still put together: only the end of the job is 100 %.
+        share = min(done / total, MAX_PROGRESS)
+        return share, f"judging {self.kind.value}: {done:,} of {total:,} steps"
 
 
 def _settle_failure(tx: Tx, claimed: ClaimedJob, future: Future[Any]) -> bool:

@@ -1,10 +1,10 @@
 """Forgetting a person: gait identifies people, so that a library must be able to forget them.
 
 One transaction removes the person's label from every clip, the name from whatever else names the
-person (`traces`: names and paths of files, metadata, lists of imported files), every evaluation that
-names the person, and every model that holds persons: after it no search and no recognition knows
-the person. A job fits the models again without them; until it is done, whatever needs those models
-asks the client to wait. Files keep their content.
+person (`traces`: names and paths of files, metadata, lists of imported files), every evaluation
+that names the person, and every model that holds persons: after it no search and no recognition
+knows the person. A job fits the models again without them; until it is done, whatever needs those
+models asks the client to wait. Files keep their content.
 """
 
 from __future__ import annotations

@@ -9,10 +9,9 @@ from kinedex.call import Call, nothing, path_of, record
 from kinedex.sent import given
 
 if TYPE_CHECKING:
-    from kinedex.types.evaluations import Evaluation, EvaluationList
-
     from kinedex.types.bodies import Filter
     from kinedex.types.choices import EvaluationKind
+    from kinedex.types.evaluations import Evaluation, EvaluationList
     from kinedex.types.jobs import JobStarted
 
 
