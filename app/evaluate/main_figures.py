@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Literal
 
 from app.analysis.low_dimensional.eigen_motion import PAPER_DIMENSIONS
+from app.models.held_out.word_methods import DEFAULT
 from app.services.evaluations.options import EvaluationKind
 
 Unit = Literal["share", "mm", "number"]
@@ -39,7 +40,7 @@ def _of_retrieval(document: Mapping[str, Any]) -> Iterator[Figure]:
 
 
 def _of_words(document: Mapping[str, Any]) -> Iterator[Figure]:
-    for row in document["figures"]:
+    for row in sorted(document["figures"], key=lambda row: row["method"] != DEFAULT):
         yield f"one of 3 words, {row['method']}", row["top_3_recognition"], "share"
         yield f"word MAP, {row['method']}", row["word_map"], "share"
 

@@ -20,11 +20,13 @@ const METHODS: Readonly<Record<string, string>> = {
   perera: "Weighted distances (Perera)",
   signatures: "Signatures (Vasilescu)",
   pca: "Flat PCA",
+  "mean-motion": "Mean motion",
   prior: "Always the most frequent",
   cca: "Correlated space (Takano)",
   "cca-score": "Correlated space, by score",
   "cca-distance": "Correlated space, by distance",
   "cca-pinv": "Correlated space, as printed",
+  "cca-symbol": "Correlated space, symbol to symbol",
 };
 
 export const methodName = (method: string): string => METHODS[method] ?? method;
