@@ -254,7 +254,7 @@ class Worker:
         self._running.append(self.executors.begin(claimed, clip))
 
     def _may_fit(self) -> bool:
-        """Whether nothing runs but an evaluation, which may take an hour."""
+        """Whether nothing runs but an evaluation: a fit does not wait for its end."""
         return all(each.claimed.job.kind is JobKind.EVALUATE for each in self._running)
 
     def _request_fit_if_due(self) -> None:

@@ -7,8 +7,10 @@ from dataclasses import fields, replace
 
 import pytest
 
+from app.demo import DemoClip
 from app.errors import BadField, TooLarge
 from app.evaluate import RECOGNIZERS as JUDGED_RECOGNIZERS
+from app.services.clips import persons
 from app.services.evaluations import evaluations
 from app.services.evaluations.evaluations import TRIMMED, Evaluated, bounded
 from app.services.evaluations.options import (
@@ -24,6 +26,7 @@ from app.store.evaluations import NewEvaluation
 from app.store.jobs import queue
 from app.store.jobs import repository as jobs
 from app.store.jobs.record import JobKind, JobState
+from tests.libraries import upload
 
 NEW = NewEvaluation("symbols", {}, 1, 12, 0.5, [{"name": "a", "value": 0.5, "unit": "share"}], {})
 
@@ -115,3 +118,19 @@ def test_results_that_hold_a_text_are_removed(lib: Library) -> None:
             stored.add(tx, new)
         assert stored.remove_where(tx, lambda text: "Zoë" in text) == 2
     assert evaluations.list_evaluations(lib).items == (kept,)
+
+
+def test_a_forgotten_person_is_in_no_result_and_no_request(
+    lib: Library, some_demo_clips: list[DemoClip]
+) -> None:
+    upload(lib, some_demo_clips[0], person="Zoë Quatermain")
+    options = EvaluationOptions(filter={"person": "Zoë Quatermain"})
+    job = evaluations.request(lib, EvaluationKind.SYMBOLS, options)
+    named = replace(NEW, document={"by_name": {"Zoë Quatermain": 1.0}})
+    with lib.store.write() as tx:
+        kept = stored.add(tx, NEW)
+        stored.add(tx, named)
+    persons.forget_person(lib, "Zoë Quatermain")
+    assert evaluations.list_evaluations(lib).items == (kept,)
+    with lib.store.read() as tx:
+        assert "Zoë" not in str(jobs.get_row(tx, job.id)["payload"])

@@ -51,9 +51,9 @@ def start_evaluation(
     """Measure how well the methods do on the labels of this library, in the background.
 
     Words and recognition are held out: no clip is judged by a model that has seen its recording.
-    It takes from seconds to an hour, by the kind and the number of clips. Follow the job; when
-    it has succeeded, its result has the `evaluation_id`. Cancel it with `DELETE /v1/jobs/{id}`.
-    If the library has too few labels, the job fails with the reason.
+    150 clips take from a second to a minute, by the kind; more clips take longer. Follow the
+    job; when it has succeeded, its result has the `evaluation_id`. Cancel it with `DELETE
+    /v1/jobs/{id}`. If the library has too few labels, the job fails with the reason.
 
     kind: recognition: persons and tasks of clips that were held out. retrieval: search by
         example, with each labeled clip as the query. words: words for clips, and clips for

@@ -16,17 +16,17 @@ export const KINDS: Readonly<Record<Kind, KindText>> = {
   recognition: {
     title: "Recognition",
     says: "How often are persons and tasks recognized that the method has not seen, and how often is somebody new called new?",
-    needs: "Needs clips with persons and tasks. About a minute for 150 clips, an hour for 2,000.",
+    needs: "Needs clips with persons and tasks. About a minute for 150 clips; more clips, persons and tasks take longer.",
   },
   retrieval: {
     title: "Search by example",
     says: "Each labeled clip searches for the others of its task. How many of the nearest clips are right?",
-    needs: "Needs clips with tasks. About a minute for 150 clips; 1,000 queries at most.",
+    needs: "Needs clips with tasks. About a minute for 150 clips; more clips take longer, up to 1,000 queries.",
   },
   words: {
     title: "Words",
     says: "How well are words guessed for clips, and clips found for words?",
-    needs: "Needs clips with words. Seconds for 150 clips, minutes for 1,000.",
+    needs: "Needs clips with words. About 15 seconds for 150 clips; at most 1,000 clips are judged.",
   },
   keyposes: {
     title: "Keyposes",
@@ -36,12 +36,12 @@ export const KINDS: Readonly<Record<Kind, KindText>> = {
   "low-dimensional": {
     title: "Few dimensions",
     says: "How far is a motion of few dimensions from the real one, if it is made of its keyposes, or of uniform poses?",
-    needs: "Needs no labels. Seconds for 150 clips, minutes for 2,000.",
+    needs: "Needs no labels. About 10 seconds for 150 clips; more clips take longer.",
   },
   symbols: {
     title: "Symbol space",
     says: "How well do distances in the space of motion symbols agree with the differences of the motions?",
-    needs: "Needs no labels. Seconds.",
+    needs: "Needs no labels. Some seconds; at most 200 clips are compared.",
   },
 };
 export const KIND_NAMES = Object.keys(KINDS) as Kind[];
