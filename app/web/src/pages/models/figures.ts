@@ -14,8 +14,11 @@ export interface Table {
   readonly rows: readonly Row[];
 }
 
+/** The name of our own method: its row stands out. */
+export const OURS = "Kinedex";
+
 const METHODS: Readonly<Record<string, string>> = {
-  default: "Kinedex",
+  default: OURS,
   multilinear: "Multilinear (Vasilescu)",
   perera: "Weighted distances (Perera)",
   signatures: "Signatures (Vasilescu)",

@@ -1,12 +1,13 @@
 /** The results of an evaluation of keyposes as blocks. */
 import { label } from "$/core/format";
+import { OURS } from "../figures";
 import { column, shares, type Block, type Cell, type Point } from "./blocks";
 import type { KeyposeDocument } from "./documents";
 
 const METHOD = column("Method", "text");
 
 const ENERGIES: Readonly<Record<string, string>> = {
-  rms: "Kinedex",
+  rms: OURS,
   printed: "Energy as printed (Perera)",
   "end-effectors": "Hands and feet",
 };

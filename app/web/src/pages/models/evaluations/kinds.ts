@@ -16,17 +16,20 @@ export const KINDS: Readonly<Record<Kind, KindText>> = {
   recognition: {
     title: "Recognition",
     says: "How often are persons and tasks recognized that the method has not seen, and how often is somebody new called new?",
-    needs: "Needs clips with persons and tasks. About a minute for 150 clips; more clips, persons and tasks take longer.",
+    needs:
+      "Needs clips with persons and tasks. About a minute for 150 clips; more clips, persons and tasks take longer.",
   },
   retrieval: {
     title: "Search by example",
     says: "Each labeled clip searches for the others of its task. How many of the nearest clips are right?",
-    needs: "Needs clips with tasks. About a minute for 150 clips; more clips take longer, up to 1,000 queries.",
+    needs:
+      "Needs clips with tasks. About a minute for 150 clips; more clips take longer, up to 1,000 queries.",
   },
   words: {
     title: "Words",
     says: "How well are words guessed for clips, and clips found for words?",
-    needs: "Needs clips with words. About 15 seconds for 150 clips; at most 1,000 clips are judged.",
+    needs:
+      "Needs clips with words. About 15 seconds for 150 clips; at most 1,000 clips are judged.",
   },
   keyposes: {
     title: "Keyposes",

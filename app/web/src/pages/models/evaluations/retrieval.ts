@@ -1,12 +1,13 @@
 /** The results of an evaluation of search by example as blocks. */
 import { label } from "$/core/format";
+import { OURS } from "../figures";
 import { column, shares, type Block } from "./blocks";
 import type { RetrievalDocument } from "./documents";
 
 const METHOD = column("Method", "text");
 
 const SEARCHES: Readonly<Record<string, string>> = {
-  fused: "Kinedex",
+  fused: OURS,
   vector: "Motion vectors",
   dtw: "Time warping",
 };
