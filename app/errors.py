@@ -131,6 +131,12 @@ class JobNotFound(NotFound):
     code = "job_not_found"
 
 
+class EvaluationNotFound(NotFound):
+    """There is no evaluation with this id."""
+
+    code = "evaluation_not_found"
+
+
 class WebhookNotFound(NotFound):
     """There is no webhook with this id."""
 

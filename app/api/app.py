@@ -30,6 +30,7 @@ from app.api.openapi import describe
 from app.api.routes import (
     clip_views,
     clips,
+    evaluations,
     export,
     health,
     imports,
@@ -101,6 +102,7 @@ ROUTES = (
     recognize,
     synthesize,
     models,
+    evaluations,
     labels,
     symbols,
     suggestions,

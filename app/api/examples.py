@@ -5,7 +5,7 @@ from __future__ import annotations
 from app.api.guard.callers import is_open
 from app.services.library.fitted_models import KINDS_WITH_UNKNOWN
 from app.services.library.library import Library
-from app.store import models, studies
+from app.store import evaluations, models, studies
 from app.store.clips import listing as clip_listing
 from app.store.database.engine import Tx
 from app.store.jobs import repository as jobs
@@ -44,10 +44,12 @@ def _of_others(tx: Tx) -> dict[str, str | None]:
     analysis = jobs.list_jobs(tx, kind=JobKind.INGEST, limit=1).items
     pairs = studies.list_pairs(tx, limit=1).items
     registered = webhooks.list_all(tx)
+    kept = evaluations.list_page(tx, limit=1).items
     recognizer = [one for one in models.list_current(tx) if one.kind in KINDS_WITH_UNKNOWN]
     return {
         "JOB_ID": analysis[0].id if analysis else None,
         "PAIR_ID": pairs[0].id if pairs else None,
+        "EVALUATION_ID": kept[0].id if kept else None,
         "WEBHOOK_ID": registered[0].id if registered else None,
         "MODEL_ID": recognizer[0].id if recognizer else None,
     }

@@ -6,7 +6,7 @@ These are the problems (RFC 9457), and the bodies that routes read without FastA
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Annotated, Any
 
 from fastapi import FastAPI, Path
@@ -46,7 +46,6 @@ _EXAMPLES: dict[int, KinedexError] = {
         "There is no clip with the id 'clip_1'", places=[Place("path.clip_id", "is no clip's id")]
     ),
     408: problems.RequestTimeout("The body came too slowly."),
-    409: errors.ClipNotReady("The clip clip_1 is queued; ask again after that."),
     413: errors.TooLarge("The body is larger than the limit of 210763776 bytes."),
     415: problems.UnsupportedMediaType("This call takes application/json."),
     422: errors.BadField(
@@ -57,7 +56,24 @@ _EXAMPLES: dict[int, KinedexError] = {
     503: problems.TooBusy("Too many heavy calls are waiting; try again shortly."),
     507: errors.DiskFull(),
 }
-"""A failure of each status, as the example of the problem."""
+"""A failure of each status but 409, as the example of the problem."""
+_CONFLICTS: dict[type[KinedexError], KinedexError] = {
+    kind: kind(detail)
+    for kind, detail in {
+        errors.AlreadyVoted: None,
+        errors.AnswerLost: None,
+        errors.CallInProgress: None,
+        errors.CallOvertaken: None,
+        errors.ClipNotReady: "The clip clip_1 is queued; ask again after that.",
+        errors.Conflict: None,
+        errors.ModelNotFitted: None,
+        errors.NotEnoughKeyposes: None,
+        errors.NotEnoughLabels: None,
+    }.items()
+}
+"""The failures with the status 409, as examples. A route names those that it can answer."""
+_OF_A_KEY = (errors.CallInProgress, errors.CallOvertaken, errors.AnswerLost)
+"""Conflicts of every call that takes an Idempotency-Key."""
 BINARY = {"schema": {"type": "string", "format": "binary"}}
 """Bytes as the content of an answer. Of an answer without a schema, generated clients lose them."""
 _EVERYWHERE = (401, 403, 422, 500, 503)
@@ -92,22 +108,35 @@ AudioClipId = Annotated[str, _id("a clip with a recording", "AUDIO_CLIP_ID")]
 JobId = Annotated[str, _id("a job", "JOB_ID")]
 PairId = Annotated[str, _id("a pair", "PAIR_ID")]
 ModelId = Annotated[str, _id("a recognizer", "MODEL_ID")]
+EvaluationId = Annotated[str, _id("an evaluation", "EVALUATION_ID")]
 WebhookId = Annotated[str, _id("a webhook", "WEBHOOK_ID")]
 
 
-def refusals(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """Return the `responses=` of a route: these statuses, and those that every call has."""
-    schema = {"$ref": _REF.format(model="Problem")}
+def refusals(*answers: int | type[KinedexError]) -> dict[int | str, dict[str, Any]]:
+    """Return the `responses=` of a route: these answers, and those that every call has.
+
+    answers: statuses; and for 409, which says nothing without its code, the failures themselves.
+    """
+    statuses = {one for one in answers if isinstance(one, int)}
+    conflicts = [one for one in answers if not isinstance(one, int)]
     with_a_body = _WITH_A_BODY if 413 in statuses else ()
-    return {
-        status: {
-            "description": _DESCRIPTIONS[status],
-            "content": {
-                problems.MEDIA_TYPE: {"schema": schema, "example": problem_of(_EXAMPLES[status])}
-            },
-        }
-        for status in sorted({*statuses, *_EVERYWHERE, *with_a_body})
+    found: dict[int | str, dict[str, Any]] = {
+        status: _refusal(status, {"example": problem_of(_EXAMPLES[status])})
+        for status in {*statuses, *_EVERYWHERE, *with_a_body}
     }
+    if conflicts:
+        found[409] = _refusal(409, {"examples": _examples_of(conflicts)})
+    return dict(sorted(found.items()))
+
+
+def _refusal(status: int, examples: Mapping[str, Any]) -> dict[str, Any]:
+    schema = {"$ref": _REF.format(model="Problem")}
+    content = {problems.MEDIA_TYPE: {"schema": schema, **examples}}
+    return {"description": _DESCRIPTIONS[status], "content": content}
+
+
+def _examples_of(conflicts: Iterable[type[KinedexError]]) -> dict[str, Any]:
+    return {kind.code: {"value": problem_of(_CONFLICTS[kind])} for kind in conflicts}
 
 
 def body(
@@ -244,4 +273,6 @@ def _add_idempotency_keys(paths: dict[str, Any]) -> None:
         for method, operation in item.items():
             if takes_key(method, path):
                 operation.setdefault("parameters", []).append(_IDEMPOTENCY_KEY)
-                operation["responses"].setdefault("409", refusals(409)[409])
+                refusal = _refusal(409, {"examples": {}})
+                found = operation["responses"].setdefault("409", refusal)
+                found["content"][problems.MEDIA_TYPE]["examples"] |= _examples_of(_OF_A_KEY)

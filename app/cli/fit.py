@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from contextlib import nullcontext
 from typing import TYPE_CHECKING
 
 import typer
 
-from app.cli.figures import shares
+from app.cli.figures import main_figure, shares
 from app.cli.output import AsCsv, AsJson, print_csv, print_json, print_table, progress_bar
 from app.cli.session import open_client
 from app.cli.settings import remote_of, settings_of
@@ -15,6 +16,7 @@ from app.cli.settings import remote_of, settings_of
 if TYPE_CHECKING:
     from kinedex import Kinedex
     from kinedex.types.jobs import Job
+    from kinedex.types.models import Model
 
 FAILURE = 1
 PROGRESS_STEPS = 1000
@@ -31,20 +33,30 @@ def fit(context: typer.Context, as_json: AsJson = False, as_csv: AsCsv = False) 
         with working_on(settings_of(context)) if is_local else nullcontext():
             job = wait_for(client, started.id, "fitting models")
         models = client.models.list()
-    rows = [
+    if as_json:
+        print_json(job.to_json())
+    elif as_csv:
+        print_csv(COLUMNS, (dict(zip(COLUMNS, row, strict=True)) for row in _all_rows(models)))
+    else:
+        print_table(COLUMNS, [_main_row(model) for model in models])
+        typer.echo("\nA figure for each model; --json and --csv have all of them.")
+        _print_failures(job)
+    if job.state != "succeeded":
+        raise typer.Exit(FAILURE)
+
+
+def _all_rows(models: Iterable[Model]) -> list[tuple[object, ...]]:
+    """A row for each figure of each model; a model without figures has one row."""
+    return [
         (model.kind, model.version, model.library_size, name, value)
         for model in models
         for name, value in shares(model.figures) or [("", None)]
     ]
-    if as_json:
-        print_json(job.to_json())
-    elif as_csv:
-        print_csv(COLUMNS, (dict(zip(COLUMNS, row, strict=True)) for row in rows))
-    else:
-        print_table(COLUMNS, rows)
-        _print_failures(job)
-    if job.state != "succeeded":
-        raise typer.Exit(FAILURE)
+
+
+def _main_row(model: Model) -> tuple[object, ...]:
+    name, value = main_figure(model.kind, model.figures)
+    return model.kind, model.version, model.library_size, name, value
 
 
 def wait_for(client: Kinedex, job_id: str, label: str) -> Job:

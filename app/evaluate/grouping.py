@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from app.services import fields
+from app.services.evaluations.options import LABELS
 from app.store.clips.metadata_values import as_text
 from app.store.clips.record import META, ClipRecord
 
-LABELS = ("person", "task", "license", "source", "folder", "format")
 NO_VALUE = "(none)"
 """The group of the clips without a value."""
 MAX_GROUPS = 100

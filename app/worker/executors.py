@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import os
 import threading
+from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import Any
+from typing import Any, TypeVar
 
 from app.kinedex_error import KinedexError
 from app.logs import level_of_process
 from app.services.children.pool import ChildPool
 from app.services.children.processes import log_like_parent
+from app.services.children.progress_file import ProgressFile
 from app.services.clips import ingest
+from app.services.evaluations import evaluations
 from app.services.imports import imports
 from app.services.library.analysis_pool import AnalysisPool
 from app.services.library.library import Library, ingest_limits
@@ -19,7 +22,16 @@ from app.services.training.fit_process import fit_in_child
 from app.store.clips.record import ClipRecord
 from app.store.jobs import outcomes
 from app.store.jobs.record import ClaimedJob, JobKind
-from app.worker.running import RunningFit, RunningImport, RunningIngest, RunningJob
+from app.worker.evaluation_process import evaluate_in_child
+from app.worker.running import (
+    RunningEvaluation,
+    RunningFit,
+    RunningImport,
+    RunningIngest,
+    RunningJob,
+)
+
+Result = TypeVar("Result")
 
 
 class JobExecutors:
@@ -37,7 +49,9 @@ class JobExecutors:
             return self._begin_ingest(claimed, clip)
         if claimed.job.kind is JobKind.IMPORT:
             return self._begin_import(claimed)
-        return RunningFit(claimed, _fit_in_process(self.lib))
+        if claimed.job.kind is JobKind.EVALUATE:
+            return self._begin_evaluation(claimed)
+        return RunningFit(claimed, _in_process(fit_in_child, self.lib.settings))
 
     def rest(self) -> None:
         """End idle analysis processes, so that their memory is free."""
@@ -70,11 +84,17 @@ class JobExecutors:
         future = self._threads.submit(imports.unpack, self.lib, claimed, progress, stopping.is_set)
         return RunningImport(claimed, future, stopping, latest)
 
+    def _begin_evaluation(self, claimed: ClaimedJob) -> RunningJob:
+        kind, options = evaluations.requested(claimed)
+        progress = ProgressFile()
+        future = _in_process(evaluate_in_child, self.lib.settings, kind, options, progress.path)
+        return RunningEvaluation(claimed, future, kind, progress)
 
-def _fit_in_process(lib: Library) -> Future[dict[str, Any]]:
-    """A fit in its own process, so that its memory is free when it ends."""
+
+def _in_process(work: Callable[..., Result], *arguments: Any) -> Future[Result]:
+    """Begin work in a process of its own, so that its memory is free when it ends."""
     pool = ChildPool(1, log_like_parent, level_of_process())
-    future = pool.submit(fit_in_child, lib.settings)
+    future = pool.submit(work, *arguments)
     # The callback runs in a thread that `close` waits for, so `close` needs another thread.
     future.add_done_callback(lambda _: threading.Thread(target=pool.close).start())
     return future

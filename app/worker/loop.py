@@ -47,6 +47,8 @@ STOP_TIMEOUT_S = 10.0
 """How long a worker that stops waits for its running jobs."""
 WATCHES_PER_LEASE = 10
 """How often in the time of a lease a worker looks at the jobs of other workers."""
+_ONE_AT_A_TIME = (JobKind.FIT, JobKind.EVALUATE)
+"""Kinds of jobs in a process of their own, which needs much memory."""
 STORE_PAUSE_S = 1.0
 """Time before another attempt after the store failed."""
 
@@ -108,9 +110,9 @@ class Worker:
                 self._expiry.remove_if_due()
                 self._recover_if_due()
                 is_idle = not self.turn()
-                if is_idle and not self._running:
-                    if until is not None and until(self.lib):
-                        return
+                if is_idle and not self._running and until is not None and until(self.lib):
+                    return
+                if is_idle and self._may_fit():
                     self._request_fit_if_due()
                 # A worker whose store fails sends none: it does no work.
                 self._heartbeat.beat_if_due()
@@ -234,22 +236,26 @@ class Worker:
         return claimed
 
     def _kinds_with_room(self, running: Iterable[ClaimedJob]) -> list[JobKind]:
-        """The kinds of jobs to claim: one import, one fit, and some analyses ahead."""
+        """The kinds of jobs to claim: one import, one fit, one evaluation, and analyses ahead."""
         running_kinds = [claimed.job.kind for claimed in running]
-        busy = running_kinds.count(JobKind.INGEST) + running_kinds.count(JobKind.FIT)
+        busy = sum(kind is not JobKind.IMPORT for kind in running_kinds)
         kinds = []
         if busy < READ_AHEAD * self.executors.slots:
             kinds.append(JobKind.INGEST)
         if JobKind.IMPORT not in running_kinds:
             kinds.append(JobKind.IMPORT)
-        if busy < self.executors.slots and JobKind.FIT not in running_kinds:
-            kinds.append(JobKind.FIT)
+        if busy < self.executors.slots:
+            kinds += [kind for kind in _ONE_AT_A_TIME if kind not in running_kinds]
         return kinds
 
     def _begin(self, claimed: ClaimedJob, clip: ClipRecord | None) -> None:
-        if claimed.job.kind is JobKind.FIT and not self._running:
-            self.executors.rest()  # a fit needs much memory
+        if claimed.job.kind in _ONE_AT_A_TIME and not self._running:
+            self.executors.rest()  # they need much memory
         self._running.append(self.executors.begin(claimed, clip))
+
+    def _may_fit(self) -> bool:
+        """Whether nothing runs but an evaluation: a fit does not wait for its end."""
+        return all(each.claimed.job.kind is JobKind.EVALUATE for each in self._running)
 
     def _request_fit_if_due(self) -> None:
         if time.monotonic() - self._last_fit_check < FIT_CHECK_S:

@@ -16,7 +16,11 @@ from app.analysis.analyze import Analysis
 from app.errors import AnalysisInterrupted, Canceled, ClipNotFound, StorageError
 from app.kinedex_error import KinedexError
 from app.services.children.child import ChildDied, ChildEnded
+from app.services.children.progress_file import ProgressFile
 from app.services.clips import ingest
+from app.services.evaluations import evaluations
+from app.services.evaluations.evaluations import Evaluated
+from app.services.evaluations.options import EvaluationKind
 from app.services.library.analysis_pool import AnalysisPool
 from app.services.library.library import Library
 from app.store.clips.record import ClipRecord
@@ -27,7 +31,10 @@ from app.store.jobs.record import ClaimedJob
 _log = logging.getLogger(__name__)
 
 RETRY_DELAY_S = 5.0
-"""Time before an import or a fit is tried again after the store failed."""
+"""Time before an import, a fit or an evaluation is tried again after the store failed."""
+
+MAX_PROGRESS = 0.99
+"""The largest completed share of an evaluation that still runs."""
 
 
 class RunningJob(Protocol):
@@ -125,6 +132,36 @@ class RunningFit:
     def progress(self) -> tuple[float | None, str | None]:
         """A text only: a fit does not report how far it is."""
         return None, "fitting the models"
+
+
+@dataclass(slots=True)
+class RunningEvaluation:
+    """An evaluation, in a child process that writes its progress into a file."""
+
+    claimed: ClaimedJob
+    future: Future[Evaluated]
+    kind: EvaluationKind
+    file: ProgressFile
+
+    def stop(self) -> None:
+        """Kills the child."""
+        self.future.cancel()
+        self.file.close()
+
+    def settle(self, tx: Tx) -> None:
+        """Keeps the result, or stores the failure."""
+        self.file.close()
+        if not _settle_failure(tx, self.claimed, self.future):
+            evaluations.finish(tx, self.claimed, self.future.result())
+
+    def progress(self) -> tuple[float | None, str | None]:
+        """The share of the steps done; a text only for kinds that do not count steps."""
+        done, total = self.file.read()
+        if not total:
+            return None, f"judging {self.kind.value}"
+        # After the last step the result is still put together: only the end of the job is 100 %.
+        share = min(done / total, MAX_PROGRESS)
+        return share, f"judging {self.kind.value}: {done:,} of {total:,} steps"
 
 
 def _settle_failure(tx: Tx, claimed: ClaimedJob, future: Future[Any]) -> bool:

@@ -54,7 +54,7 @@ def test_the_state_of_a_library_is_shown(demo_service: Live) -> None:
     index = values(found["kinedex_index_version"])[()]
     assert 0 <= index <= values(found["kinedex_library_version"])[()]
     jobs = values(found["kinedex_jobs"])
-    assert len(jobs) == 15
+    assert len(jobs) == 20
     assert jobs["ingest", "succeeded"] >= clips
     assert values(found["kinedex_oldest_job_age_seconds"])["ingest", "queued"] == 0.0
     assert values(found["kinedex_workers"]) == {("alive",): 1.0, ("silent",): 0.0}

@@ -68,6 +68,9 @@ def test_the_map_names_every_clip(demo: httpx2.Client, space: str) -> None:
     only = demo.get("/v1/space", params={"space": space, "task": "walk"}).json()
     assert {item["task"] for item in only["items"]} == {"walk"}
     assert demo.get("/v1/space", params={"dimensions": 4}).status_code == 422
+    described = demo.get("/openapi.json").json()["paths"]["/v1/space"]["get"]["parameters"]
+    (dimensions,) = [one["schema"] for one in described if one["name"] == "dimensions"]
+    assert (dimensions["type"], dimensions["minimum"], dimensions["maximum"]) == ("integer", 2, 3)
 
 
 def test_forgetting_an_unknown_person_is_not_found(demo: httpx2.Client) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 from pathlib import Path
 
 import pytest
@@ -120,10 +122,13 @@ def test_a_query_in_two_files_and_one_of_several_animations(
     assert kinedex("search", pair[0], "--skeleton", str(tmp_path / "no.asf")).code == 2
 
 
-def test_a_fit_shows_the_held_out_figures_of_each_model(kinedex: Kinedex) -> None:
+def test_a_fit_shows_a_held_out_figure_of_each_model(kinedex: Kinedex) -> None:
     ended = kinedex("fit")
     assert ended.code == 0
-    assert {line.split()[0] for line in ended.out.splitlines()[1:]} == {
+    table = ended.out.split("\n\n")[0].splitlines()[1:]
+    rows = {line.split()[0]: line.split()[3:] for line in table}
+    assert len(rows) == len(table)  # a line for each model
+    assert set(rows) == {
         "words",
         "recognizer",
         "multilinear",
@@ -133,10 +138,15 @@ def test_a_fit_shows_the_held_out_figures_of_each_model(kinedex: Kinedex) -> Non
         "metric-task",
         "metric-person",
     }
-    rows = [row[3:] for line in ended.out.splitlines() if (row := line.split())[0] == "recognizer"]
+    assert rows["recognizer"][:-1] == ["held_out", "default", "task"]
+    assert 0.0 <= float(rows["recognizer"][-1]) <= 1.0
+
+
+def test_a_fit_gives_all_figures_as_csv(kinedex: Kinedex) -> None:
+    lines = list(csv.DictReader(io.StringIO(kinedex("fit", "--csv").out)))
+    shares = {one["held out"]: one["figure"] for one in lines if one["model"] == "recognizer"}
     for method in ("prior", "default"):
-        (share,) = [row[-1] for row in rows if row[:-1] == ["held_out", method, "task"]]
-        assert 0.0 <= float(share) <= 1.0
+        assert 0.0 <= float(shares[f"held_out {method} task"]) <= 1.0
 
 
 def test_a_wrong_query_gets_a_clear_message(kinedex: Kinedex, folder: Path) -> None:

@@ -56,6 +56,39 @@ def test_a_motion_that_nobody_recorded_plays_beside_a_real_one(browser: Browser,
         expect(page).to_have_url(re.compile(r"/clips/clip_\w+$"))
 
 
+def test_the_person_of_chosen_clips_moves_too(browser: Browser, gap: Live) -> None:
+    person, task = LEFT_OUT
+    with opened(browser, gap.url) as page:
+        page.goto(f"/?person={person}&task=walk")
+        boxes = page.get_by_role("checkbox", name=re.compile("^Choose "))
+        expect(boxes).to_have_count(2)
+        for box in boxes.all():
+            box.click()
+        page.get_by_role("link", name="Make a motion of this person").click()
+        expect(page.get_by_text("The person of")).to_be_visible()
+        page.get_by_label("Task").select_option(task)
+        expect(page).to_have_url(re.compile(rf"/make\?clips=clip_\w+%2Cclip_\w+&task={task}"))
+        player = page.get_by_role("region", name="Player of the made motion")
+        expect(player.locator(".head")).to_have_count(2)
+        quality = page.get_by_role("region", name="What to expect")
+        expect(quality).to_contain_text("of 1 task that")
+        page.reload()
+        expect(player.locator(".head")).to_have_count(2)
+        page.get_by_role("button", name="Choose a person instead").click()
+        expect(page.get_by_label("Person")).to_be_visible()
+
+
+def test_clips_of_two_persons_are_refused(browser: Browser, gap: Live) -> None:
+    with gap.client() as client:
+        ids = [
+            client.get("/v1/clips", params={"person": name, "limit": 1}).json()["items"][0]["id"]
+            for name in ("ada", "chika")
+        ]
+    with opened(browser, gap.url, expected=("422",)) as page:
+        page.goto(f"/make?clips={','.join(ids)}&task=kick")
+        expect(page.get_by_role("alert").filter(has_text="of one person")).to_be_visible()
+
+
 def test_what_cannot_be_made_is_said(browser: Browser, demo_service: Live) -> None:
     with opened(browser, demo_service.url, expected=("404", "409", "422")) as page:
         page.goto("/make?person=nobody&task=kick")

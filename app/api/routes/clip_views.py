@@ -12,6 +12,7 @@ from app.api.openapi import BINARY, ClipId, refusals
 from app.api.schemas.views import Descriptor, Motion, MotionQueryParameters
 from app.api.streams import OCTETS, as_json, as_octets, prefers_octets
 from app.api.validators import UNCHANGED, of_one_clip
+from app.errors import ClipNotReady
 from app.services.views import views
 
 router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads])
@@ -31,7 +32,7 @@ OCTET_ANSWER = {"content": {OCTETS: BINARY}, "headers": {"X-Shape": _SHAPE}}
     responses={
         200: OCTET_ANSWER,
         304: UNCHANGED,
-        **refusals(404, 409),
+        **refusals(404, ClipNotReady),
     },
 )
 def get_motion(
@@ -45,7 +46,7 @@ def get_motion(
 @router.get(
     "/descriptor",
     dependencies=[of_one_clip, heavy],
-    responses={304: UNCHANGED, **refusals(404, 409)},
+    responses={304: UNCHANGED, **refusals(404, ClipNotReady)},
 )
 def get_descriptor(lib: Lib, clip_id: ClipId) -> Descriptor:
     """The arrays by which the clip is compared with others."""
@@ -62,7 +63,7 @@ def get_descriptor(lib: Lib, clip_id: ClipId) -> Descriptor:
             "content": {"image/svg+xml": BINARY},
         },
         304: UNCHANGED,
-        **refusals(404, 409),
+        **refusals(404, ClipNotReady),
     },
 )
 def get_thumbnail(lib: Lib, clip_id: ClipId) -> Response:

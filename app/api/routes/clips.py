@@ -18,7 +18,7 @@ from app.api.queries import file_of
 from app.api.schemas.clips import Clip, ClipCreated, ClipForm, ClipList, ClipPatch, ClipQuery
 from app.api.sparse import ChosenFields, sparse_item, sparse_page
 from app.api.validators import UNCHANGED, validate, weak_tag
-from app.errors import ClipNotFound
+from app.errors import ClipNotFound, Conflict
 from app.services.clips import catalogue as clips
 from app.services.clips.catalogue import StoredFile
 from app.services.clips.merging import OnConflict
@@ -48,7 +48,7 @@ async def _form(request: Request) -> tuple[ClipForm, dict[str, UploadFile]]:
     dependencies=[writes, Depends(_form), changes],  # takes a slot after the form has arrived
     responses={
         200: {"model": ClipCreated, "description": "The same bytes were stored before."},
-        **refusals(400, 409, 413, 415, 503, 507),
+        **refusals(400, 413, 415, 503, 507, Conflict),
     },
     openapi_extra=body(form=ClipForm, files=FILES, needed=["file"]),
 )
@@ -114,7 +114,7 @@ def get_clip(
 @router.patch(
     "/{clip_id}",
     dependencies=[writes, Depends(require_json), changes],
-    responses=refusals(400, 404, 409, 413, 415),
+    responses=refusals(400, 404, 413, 415),
 )
 def update_clip(lib: Lib, clip_id: ClipId, patch: ClipPatch) -> Clip:
     """Correct the labels or hints of a clip."""

@@ -16,6 +16,7 @@ from app.api.openapi import BINARY, ClipId, refusals
 from app.api.pieces import Pieces
 from app.api.schemas.export import ExportQuery
 from app.api.validators import UNCHANGED, of_one_clip
+from app.errors import ClipNotReady, NotEnoughKeyposes
 from app.services.views.export import export
 from app.services.views.export_format import ExportFormat
 
@@ -119,7 +120,7 @@ run, times that need the foot off are empty: the method does not find it there.
             "content": dict.fromkeys(MEDIA_TYPES.values(), BINARY),
         },
         304: UNCHANGED,
-        **refusals(404, 409),
+        **refusals(404, ClipNotReady, NotEnoughKeyposes),
     },
 )
 def get_export(lib: Lib, clip_id: ClipId, query: Annotated[ExportQuery, Query()]) -> Response:

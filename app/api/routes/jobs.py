@@ -14,7 +14,7 @@ from app.api.deps import Lib, reads, writes
 from app.api.guard.admission import changes, follow, quick
 from app.api.openapi import JobId, refusals
 from app.api.schemas.jobs import Job, JobFileList, JobFileQuery, JobList, JobQuery
-from app.errors import JobNotFound
+from app.errors import Conflict, JobNotFound
 from app.services.clips import jobs
 from app.services.library.library import Library
 from app.store.jobs.record import JobRecord
@@ -55,7 +55,7 @@ def list_files(lib: Lib, job_id: JobId, query: Annotated[JobFileQuery, Query()])
     dependencies=[writes, changes],
     response_model=Job,
     responses={
-        **refusals(404, 409),
+        **refusals(404, Conflict),
         202: {"description": "The job had not ended: it is canceled, or stops soon."},
         204: {"description": "The job had ended: it is deleted, with the list of its files."},
     },

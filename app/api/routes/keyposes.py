@@ -11,6 +11,7 @@ from app.api.deps import Lib, reads, writes
 from app.api.guard.admission import heavy
 from app.api.openapi import ClipId, refusals
 from app.api.schemas.keyposes import KeyposeQuery, Keyposes, KeyposesNamed, NamedKeyposes
+from app.errors import ClipNotReady
 from app.services.views import keyposes
 
 router = APIRouter(prefix="/v1/clips/{clip_id}/keyposes", tags=["clips"])
@@ -32,7 +33,9 @@ of the next fit then use these keyposes. `GET` shows them beside the keyposes th
 """
 
 
-@router.get("", dependencies=[reads, heavy], responses=refusals(404, 409), description=_FOUND)
+@router.get(
+    "", dependencies=[reads, heavy], responses=refusals(404, ClipNotReady), description=_FOUND
+)
 def get_keyposes(lib: Lib, clip_id: ClipId, query: Annotated[KeyposeQuery, Query()]) -> Keyposes:
     """A clip's keyposes."""
     return Keyposes.of(

@@ -18,6 +18,7 @@ from app.api.schemas.low_dimensional import (
 )
 from app.api.streams import as_json, as_octets, prefers_octets
 from app.api.validators import UNCHANGED, of_one_clip
+from app.errors import ClipNotReady, NotEnoughKeyposes
 from app.services.views import low_dimensional
 from app.services.views.animations import animation_svg
 
@@ -51,7 +52,7 @@ SVG_ANSWER = {
     response_model=LowDimensional,
     description=DESCRIPTION,
     dependencies=[heavy],
-    responses={200: OCTET_ANSWER, **refusals(404, 409)},
+    responses={200: OCTET_ANSWER, **refusals(404, ClipNotReady, NotEnoughKeyposes)},
 )
 def get_low_dimensional(
     lib: Lib, request: Request, clip_id: ClipId, query: Annotated[LowDimensionalQuery, Query()]
@@ -68,7 +69,7 @@ def get_low_dimensional(
     "/animation.svg",
     dependencies=[of_one_clip, heavy],
     response_class=Response,
-    responses={200: SVG_ANSWER, 304: UNCHANGED, **refusals(404, 409)},
+    responses={200: SVG_ANSWER, 304: UNCHANGED, **refusals(404, ClipNotReady, NotEnoughKeyposes)},
 )
 def get_animation(lib: Lib, clip_id: ClipId, query: Annotated[AnimationQuery, Query()]) -> Response:
     """The clip as a moving stick figure. With `dimensions`, it shows the low-dimensional motion.

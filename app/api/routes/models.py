@@ -24,6 +24,7 @@ from app.api.schemas.models import (
     Signatures,
     UnfittedModel,
 )
+from app.errors import ModelNotFitted
 from app.services.recognition import confusion
 from app.services.recognition.signatures import signature_points
 from app.services.training import models
@@ -56,13 +57,13 @@ def update_model(lib: Lib, model_id: ModelId, patch: ModelPatch) -> Model:
     return Model.of(record, active_errors(lib, record))
 
 
-@router.get("/confusion", dependencies=[reads, heavy], responses=refusals(409))
+@router.get("/confusion", dependencies=[reads, heavy], responses=refusals(ModelNotFitted))
 def get_confusion(lib: Lib, query: Annotated[ConfusionQuery, Query()]) -> Confusion:
     """What the recognizer takes clips for that it has not seen, as a confusion matrix."""
     return Confusion.of(query.factor, *confusion.confusion(lib, query.factor))
 
 
-@router.get("/confusion/clips", dependencies=[reads, heavy], responses=refusals(409))
+@router.get("/confusion/clips", dependencies=[reads, heavy], responses=refusals(ModelNotFitted))
 def list_confused_clips(
     lib: Lib, label: TaskOrPerson, guess: TaskOrPerson, factor: Factor = "task", limit: Limit = 100
 ) -> ConfusedClips:
@@ -71,13 +72,13 @@ def list_confused_clips(
     return ConfusedClips(items=[Clip.model_validate(clip) for clip in found])
 
 
-@router.get("/signatures", dependencies=[reads, heavy], responses=refusals(409))
+@router.get("/signatures", dependencies=[reads, heavy], responses=refusals(ModelNotFitted))
 def list_signatures(lib: Lib) -> Signatures:
     """The signature of each person in the multilinear model, as a point in two dimensions."""
     return Signatures.of(*signature_points(lib))
 
 
-@router.post("/fit", status_code=202, dependencies=[writes, changes], responses=refusals(409))
+@router.post("/fit", status_code=202, dependencies=[writes, changes], responses=refusals())
 def request_fit(lib: Lib) -> JobStarted:
     """Fit all models again in the background. Until the fit ends, searches use the old models."""
     return JobStarted(job=Job.model_validate(models.request_fit(lib)))

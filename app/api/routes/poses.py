@@ -14,6 +14,7 @@ from app.api.openapi import body, refusals
 from app.api.queries import QUERY_FILES, source_of
 from app.api.schemas.pose import A_POSE, PoseHits, PoseSearch, PoseSearchForm
 from app.api.sparse import ChosenFields, clip_fields, sparse_page
+from app.errors import ClipNotReady
 from app.services.find.by_pose import PoseQuery, find_pose
 
 router = APIRouter(prefix="/v1/search", tags=["search"])
@@ -35,7 +36,7 @@ async def _pose_query(request: Request) -> PoseQuery:
     "/pose",
     dependencies=[reads, Depends(_pose_query), heavy],  # takes a slot after the form has arrived
     response_model=PoseHits,
-    responses=refusals(400, 404, 409, 413, 415, 503, 507),
+    responses=refusals(400, 404, 413, 415, 503, 507, ClipNotReady),
     openapi_extra=body(
         model=PoseSearch,
         examples=_EXAMPLES,

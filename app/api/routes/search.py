@@ -15,6 +15,7 @@ from app.api.queries import QUERY_FILES, file_of, source_of
 from app.api.schemas.composed_search import ComposedHits, ComposedSearch, ComposedSearchForm
 from app.api.schemas.search import MotionHits, MotionSearch, MotionSearchForm, WordHits, WordSearch
 from app.api.sparse import ChosenFields, clip_fields, sparse_page
+from app.errors import ClipNotReady, ModelNotFitted, NotEnoughLabels
 from app.services.find import find
 from app.services.find.by_parts import find_by_parts
 from app.services.find.queries import ComposedQuery, MotionQuery
@@ -72,7 +73,7 @@ async def _motion_query(request: Request) -> MotionQuery:
 @router.post(
     "/motion",
     dependencies=[reads, Depends(_motion_query), heavy],  # takes a slot after the form has arrived
-    responses=refusals(400, 404, 409, 413, 415, 503, 507),
+    responses=refusals(400, 404, 413, 415, 503, 507, ClipNotReady, ModelNotFitted),
     response_model=MotionHits,
     openapi_extra=body(
         model=MotionSearch,
@@ -97,7 +98,7 @@ def search_motion(
     "/words",
     dependencies=[reads, Depends(require_json), heavy],
     response_model=WordHits,
-    responses=refusals(400, 409, 413, 415),
+    responses=refusals(400, 413, 415, ModelNotFitted, NotEnoughLabels),
 )
 def search_words(lib: Lib, sent: WordSearch, fields: ChosenFields = None) -> WordHits | Response:
     """Find motions for words, phrases or sentences. The most probable motion comes first.

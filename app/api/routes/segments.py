@@ -8,12 +8,13 @@ from app.api.deps import Lib, reads
 from app.api.guard.admission import heavy
 from app.api.openapi import ClipId, refusals
 from app.api.schemas.segments import SegmentList
+from app.errors import ClipNotReady
 from app.services.views.segments import list_segments
 
 router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads])
 
 
-@router.get("/segments", dependencies=[heavy], responses=refusals(404, 409))
+@router.get("/segments", dependencies=[heavy], responses=refusals(404, ClipNotReady))
 def get_segments(lib: Lib, clip_id: ClipId) -> SegmentList:
     """The motions from each keypose to the next, and the sequences of them that repeat.
 

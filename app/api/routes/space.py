@@ -10,14 +10,14 @@ from app.api.deps import Lib, reads
 from app.api.guard.admission import heavy
 from app.api.openapi import refusals
 from app.api.schemas.space import SpaceMap, SpaceQuery
+from app.errors import ModelNotFitted
 from app.services.find import map as space
 
 router = APIRouter(prefix="/v1/space", tags=["search"], dependencies=[reads])
 
 
-@router.get("", dependencies=[heavy], responses=refusals(409))
+@router.get("", dependencies=[heavy], responses=refusals(ModelNotFitted))
 def get_space(lib: Lib, query: Annotated[SpaceQuery, Query()]) -> SpaceMap:
     """Every ready clip as a point in two or three dimensions. Similar clips are close together."""
-    dimensions = int(query.dimensions)
-    found = space.draw_map(lib, query.space, dimensions, query.as_filter(), query.limit)
+    found = space.draw_map(lib, query.space, query.dimensions, query.as_filter(), query.limit)
     return SpaceMap.of(query, found)

@@ -26,20 +26,21 @@ from app.api.schemas.studies import (
 )
 from app.api.schemas.views import Motion
 from app.api.streams import as_json, as_octets, prefers_octets
+from app.errors import AlreadyVoted, ClipNotReady, NotEnoughKeyposes
 from app.services.views import studies
 from app.services.views.studies import Side
 from app.store.database.paging import Page
 
 router = APIRouter(tags=["studies"])
 
-_BODY_REFUSALS = refusals(400, 404, 409, 413, 415)
+_BODY = (400, 404, 413, 415)
 
 
 @router.post(
     PAIRS,
     status_code=201,
     dependencies=[writes, Depends(require_json), heavy],
-    responses=_BODY_REFUSALS,
+    responses=refusals(*_BODY, ClipNotReady, NotEnoughKeyposes),
 )
 def draw_pair(lib: Lib, new: NewPair) -> Pair:
     """Make a pair to compare: two low-dimensional motions of a clip.
@@ -77,7 +78,7 @@ def delete_pair(lib: Lib, pair_id: PairId) -> None:
     PAIRS + "/{pair_id}/animation.svg",
     dependencies=[reads, heavy],
     response_class=Response,
-    responses={200: SVG_ANSWER, **refusals(404, 409)},
+    responses={200: SVG_ANSWER, **refusals(404, ClipNotReady)},
 )
 def get_pair_animation(lib: Lib, pair_id: PairId) -> Response:
     """The three motions side by side and synchronous, with the original in the middle (fig. 12)."""
@@ -88,7 +89,7 @@ def get_pair_animation(lib: Lib, pair_id: PairId) -> Response:
     PAIRS + "/{pair_id}/{side}",
     dependencies=[reads, heavy],
     response_model=Motion,
-    responses={200: OCTET_ANSWER, **refusals(404, 409)},
+    responses={200: OCTET_ANSWER, **refusals(404, ClipNotReady)},
 )
 def get_pair_motion(
     lib: Lib, request: Request, pair_id: PairId, side: Side, query: Annotated[SideQuery, Query()]
@@ -102,7 +103,7 @@ def get_pair_motion(
     PAIRS + "/{pair_id}/votes",
     status_code=201,
     dependencies=[writes, Depends(require_json), changes],
-    responses=_BODY_REFUSALS,
+    responses=refusals(*_BODY, AlreadyVoted),
 )
 def vote(lib: Lib, pair_id: PairId, new: NewVote) -> Vote:
     """Say which side is nearer to the original."""

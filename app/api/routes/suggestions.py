@@ -12,6 +12,7 @@ from app.api.guard.admission import heavy
 from app.api.openapi import ClipId, refusals
 from app.api.schemas.clips import Clip
 from app.api.schemas.labels import AcceptedWords, WordSuggestions
+from app.errors import ClipNotReady, ModelNotFitted, NotEnoughLabels
 from app.services.recognition import suggestions
 
 router = APIRouter(prefix="/v1/clips/{clip_id}/word-suggestions", tags=["clips"])
@@ -26,7 +27,11 @@ Mode = Annotated[
 SuggestionLimit = Annotated[int, Query(ge=1, le=suggestions.MAX_SUGGESTED)]
 
 
-@router.get("", dependencies=[reads, heavy], responses=refusals(404, 409))
+@router.get(
+    "",
+    dependencies=[reads, heavy],
+    responses=refusals(404, ClipNotReady, ModelNotFitted, NotEnoughLabels),
+)
 def suggest_words(
     lib: Lib, clip_id: ClipId, limit: SuggestionLimit = 10, mode: Mode = "default"
 ) -> WordSuggestions:
@@ -37,7 +42,7 @@ def suggest_words(
 @router.post(
     "/accept",
     dependencies=[writes, Depends(require_json_if_any), heavy],
-    responses=refusals(400, 404, 409, 413, 415),
+    responses=refusals(400, 404, 413, 415, ClipNotReady, ModelNotFitted),
 )
 def accept_words(lib: Lib, clip_id: ClipId, accepted: AcceptedWords | None = None) -> Clip:
     """Add suggested words to the clip. The next fit learns from them.

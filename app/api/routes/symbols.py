@@ -11,6 +11,7 @@ from app.api.routes.clip_views import OCTET_ANSWER
 from app.api.schemas.symbols import SymbolMotion, channels_json
 from app.api.streams import as_json, as_octets, prefers_octets
 from app.api.validators import UNCHANGED, of_one_clip
+from app.errors import ClipNotReady
 from app.services.views import symbol_motion
 
 router = APIRouter(tags=["clips"], dependencies=[reads])
@@ -20,7 +21,7 @@ router = APIRouter(tags=["clips"], dependencies=[reads])
     "/v1/clips/{clip_id}/symbol/motion",
     response_model=SymbolMotion,
     dependencies=[of_one_clip, heavy],
-    responses={200: OCTET_ANSWER, 304: UNCHANGED, **refusals(404, 409)},
+    responses={200: OCTET_ANSWER, 304: UNCHANGED, **refusals(404, ClipNotReady)},
 )
 def get_symbol_motion(lib: Lib, request: Request, clip_id: ClipId) -> Response:
     """The mean trajectory of the clip's motion symbol.

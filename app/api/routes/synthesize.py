@@ -11,6 +11,7 @@ from app.api.openapi import refusals
 from app.api.routes.clip_views import OCTET_ANSWER
 from app.api.schemas.synthesis import Synthesis, Synthesize
 from app.api.streams import as_octets, prefers_octets
+from app.errors import ClipNotReady, ModelNotFitted, NotEnoughLabels
 from app.services.synthesis.synthesize import SynthesisQuery
 from app.services.synthesis.synthesize import synthesize as synthesize_motion
 
@@ -39,7 +40,7 @@ it. `Accept: application/octet-stream` returns only the positions.
     responses={
         200: OCTET_ANSWER,
         201: {"description": "Stored as a clip.", "model": Synthesis},
-        **refusals(400, 404, 409, 413, 415, 503, 507),
+        **refusals(400, 404, 413, 415, 503, 507, ClipNotReady, ModelNotFitted, NotEnoughLabels),
     },
 )
 def synthesize(

@@ -15,6 +15,7 @@ from app.api.schemas.webhooks import (
     WebhookList,
     WebhookPatch,
 )
+from app.errors import Conflict
 from app.services.webhooks import registry
 
 router = APIRouter(prefix="/v1/webhooks", tags=["webhooks"], dependencies=[administers])
@@ -40,7 +41,7 @@ same id. After 16 failures in a row, or after the status 410, the webhook is swi
     status_code=201,
     dependencies=[Depends(require_json), changes],
     description=_CREATE,
-    responses=refusals(400, 409, 413, 415),
+    responses=refusals(400, 413, 415, Conflict),
 )
 def create_webhook(lib: Lib, new: NewWebhook) -> WebhookCreated:
     """Create a webhook."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, Self, TypeVar
 
 from pydantic import (
     AfterValidator,
@@ -10,11 +10,15 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
+    ModelWrapValidatorHandler,
     StrictBool,
     StrictFloat,
     StrictInt,
+    ValidationError,
+    model_validator,
 )
 
+from app.api.schemas.near_names import with_near_names
 from app.motion.roles.joint_roles import JointRole
 from app.motion.roles.roles import MAX_JOINTS_OF_MIDDLE
 from app.search.index.filters import MAX_LABEL_LENGTH, MAX_LABELS
@@ -30,6 +34,15 @@ class Incoming(BaseModel):
     """A body or query: unknown fields and numbers that are not finite are refused."""
 
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _name_the_nearest_field(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        """Say which field an unknown one may stand for."""
+        try:
+            return handler(data)
+        except ValidationError as error:
+            raise with_near_names(error, cls.model_fields) from None
 
 
 class Outgoing(BaseModel):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 from pydantic import Field
 
 from app.api.schemas.base import Metadata, Outgoing
@@ -20,7 +18,7 @@ class SpaceQuery(Filter):
         "symbols",
         description="symbols: the motion symbol space (fitted). vectors: the motion vectors.",
     )
-    dimensions: Literal["2", "3"] = "2"
+    dimensions: int = Field(2, ge=2, le=3)
     limit: int = Field(
         10_000,
         ge=1,
@@ -71,7 +69,7 @@ class SpaceMap(Outgoing):
         points = drawn.points.tolist()
         return cls(
             space=query.space,
-            dimensions=int(query.dimensions),
+            dimensions=query.dimensions,
             variance_kept=min(drawn.kept, 1.0),
             total=drawn.total,
             library_version=drawn.library_version,

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -19,10 +18,10 @@ from app.cli.settings import open_library
 from app.evaluate import KeyposeEvaluation
 from app.evaluate import charts as pictures
 from app.evaluate.keyposes import pictures as keypose_pictures
+from app.evaluate.keyposes.document import keypose_document
 from app.models.keyposes.matching import TOLERANCE
 from app.models.keyposes.thresholds import USUAL, ThresholdCurve
 from app.services.library.library import Library
-from app.services.training.keypose_learning import counts_document
 from app.store.clips.record import ClipRecord
 
 Tolerance = Annotated[
@@ -66,7 +65,9 @@ def keyposes(
             if not evaluate.is_any_annotated(lib, filter):
                 return  # only the pictures were possible
         found = evaluate.judge_keyposes(lib, filter, tolerance, by)
-    report(lambda: _document(found), lambda: _print(found), as_json=as_json, csv_file=csv_file)
+    report(
+        lambda: keypose_document(found), lambda: _print(found), as_json=as_json, csv_file=csv_file
+    )
     drawing.draw_one(lambda form: keypose_pictures.threshold_figure(found, form))
 
 
@@ -77,48 +78,6 @@ def _clip_figures(
     with progress_bar() as bar:
         for clip in bar.track(clips, description="drawing"):
             yield f"{clip.id}.{form}", keypose_pictures.clip_figure(lib, clip, form)
-
-
-def _document(found: KeyposeEvaluation) -> dict[str, Any]:
-    return {
-        "tolerance": found.tolerance,
-        "recordings": found.recordings,
-        "clips": [
-            {
-                "clip_id": clip.clip_id,
-                "name": clip.name,
-                "task": clip.task,
-                "true": clip.true,
-                "methods": {
-                    method: {"found": counts.found, "correct": counts.correct}
-                    for method, counts in clip.counts.items()
-                },
-            }
-            for clip in found.clips
-        ],
-        "methods": {
-            judged.method: {
-                "held_out": counts_document(judged.counts),
-                "by_group": {
-                    group: counts_document(counts)
-                    for group, counts in found.by_group(judged.method).items()
-                },
-                "usual_thresholds": counts_document(judged.usual),
-                "learned": asdict(judged.learned),
-                "over_t1": _curve(judged.t1),
-                "over_t2": _curve(judged.t2),
-            }
-            for judged in found.methods
-        },
-    }
-
-
-def _curve(curve: ThresholdCurve) -> dict[str, list[float]]:
-    return {
-        "values": curve.values.tolist(),
-        "precision": curve.precision.tolist(),
-        "recall": curve.recall.tolist(),
-    }
 
 
 def _print(found: KeyposeEvaluation) -> None:

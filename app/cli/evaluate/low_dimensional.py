@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -16,6 +16,7 @@ from app.cli.options import FilterJson, PictureFormat
 from app.cli.output import AsJson
 from app.evaluate import LowDimensionalEvaluation
 from app.evaluate.low_dimensional import pictures as low_dimensional_pictures
+from app.evaluate.low_dimensional.document import low_dimensional_document
 
 Pictures = Annotated[
     Path | None, typer.Option("--pictures", help="Draw figures 7 to 14 into this folder.")
@@ -36,48 +37,13 @@ def low_dimensional(
     drawing = Drawing.prepared(folder=pictures_dir, picture_format=picture_format)
     with judging(context, "reducing") as (lib, progress):
         found = evaluate.judge_low_dimensional(lib, filter, progress)
-    report(lambda: _document(found), lambda: _print(found), as_json=as_json, csv_file=csv_file)
+    report(
+        lambda: low_dimensional_document(found),
+        lambda: _print(found),
+        as_json=as_json,
+        csv_file=csv_file,
+    )
     drawing.draw_all(lambda form: low_dimensional_pictures.all_figures(found, form).items())
-
-
-def _document(found: LowDimensionalEvaluation) -> dict[str, Any]:
-    return {
-        "clips": found.clips,
-        "left_out": found.left_out,
-        "dimensions": [
-            {
-                "dimensions": row.dimensions,
-                "clips": row.clips,
-                "variance_kept": dict(row.variance),
-                "error_mm": {**row.error, "all_frames": row.best},
-                "keypose_better": row.keypose_better,
-            }
-            for row in found.dimensions
-        ],
-        "poses": [
-            {
-                "basis": row.name,
-                "frames": row.frames,
-                "implausible": row.implausible,
-                "faults": dict(row.faults),
-                "silhouette": row.silhouette,
-            }
-            for row in found.poses
-        ],
-        "more_clustered": found.more_clustered,
-        "groups": [
-            {
-                "task": row.task,
-                "persons": row.persons,
-                "poses": row.poses,
-                "variance_kept": dict(row.variance),
-                "error_mm": dict(row.error),
-                "silhouette": dict(row.silhouette),
-                "gap": dict(row.gap),
-            }
-            for row in found.groups
-        ],
-    }
 
 
 def _print(found: LowDimensionalEvaluation) -> None:

@@ -9,13 +9,13 @@ import typer
 
 from app import evaluate
 from app.cli.evaluate.drawing import Drawing
-from app.cli.evaluate.recognition_document import document
 from app.cli.evaluate.recognition_tables import print_tables
 from app.cli.evaluate.running import judging, parsed_filter
 from app.cli.evaluate.tables import CsvFile, check_csv, report
 from app.cli.options import By, FilterJson, PictureFormat
 from app.cli.output import AsJson
 from app.evaluate.recognition import pictures as recognition_pictures
+from app.evaluate.recognition.document import recognition_document
 
 Methods = Annotated[
     list[str] | None,
@@ -63,5 +63,10 @@ def recognition(
             by=by,
             progress=progress,
         )
-    report(lambda: document(found), lambda: print_tables(found), as_json=as_json, csv_file=csv_file)
+    report(
+        lambda: recognition_document(found),
+        lambda: print_tables(found),
+        as_json=as_json,
+        csv_file=csv_file,
+    )
     drawing.draw_all(lambda form: recognition_pictures.all_figures(found, form).items())

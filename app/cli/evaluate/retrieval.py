@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 import typer
@@ -19,6 +19,7 @@ from app.cli.output import AsJson, print_text
 from app.evaluate import RetrievalEvaluation, VolumeEvaluation
 from app.evaluate import charts as pictures
 from app.evaluate.retrieval import pictures as retrieval_pictures
+from app.evaluate.retrieval.document import retrieval_document
 from app.search.example.methods import Method
 
 Classes = Annotated[
@@ -87,7 +88,7 @@ def retrieval(
         )
         volumes = evaluate.judge_volumes(lib, filter, classes=names, threshold=eta)
     report(
-        lambda: _document(found, volumes),
+        lambda: retrieval_document(found, volumes),
         lambda: _print(found, volumes),
         as_json=as_json,
         csv_file=csv_file,
@@ -98,45 +99,6 @@ def retrieval(
 
 def _confusions(found: RetrievalEvaluation, form: pictures.Format) -> bytes:
     return retrieval_pictures.confusion_figure(found, retrieval_pictures.shown_methods(found), form)
-
-
-def _document(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> dict[str, Any]:
-    return {
-        "figures": [asdict(judged.figures) for judged in found.methods],
-        "by_group": {
-            judged.figures.method: {
-                group: asdict(figures) for group, figures in judged.by_group.items()
-            }
-            for judged in found.methods
-        },
-        "true_positive_rates": {
-            "classes": found.chosen,
-            "k": found.k,
-            "mixture": found.mixture,
-            "methods": {
-                judged.figures.method: {
-                    **dict(zip(found.chosen, judged.rates.tolist(), strict=True)),
-                    "overall": judged.overall,
-                }
-                for judged in found.methods
-            },
-        },
-        "confusion": {
-            "classes": found.classes,
-            "k": found.k,
-            "methods": {one.figures.method: one.confusion.tolist() for one in found.methods},
-        },
-        "left_out": {"unlabeled": found.unlabeled, "alone": found.alone},
-        "volumes": {
-            "q": volumes.q,
-            "eta": volumes.threshold,
-            "clips": len(volumes.iterations),
-            "converged": volumes.converged,
-            "median_iterations": float(np.median(volumes.iterations)),
-            "most_iterations": max(volumes.iterations),
-            "compression": asdict(volumes.compression),
-        },
-    }
 
 
 def _print(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> None:

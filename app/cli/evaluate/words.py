@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -17,6 +16,7 @@ from app.cli.options import FilterJson
 from app.cli.output import AsJson, print_table, print_text
 from app.cli.settings import open_library
 from app.evaluate import WordExample
+from app.evaluate.words.document import word_document
 from app.models.held_out.words import (
     MIN_RECORDINGS,
     RECALLS,
@@ -55,21 +55,12 @@ def words(
         found = evaluate.judge_words(lib, filter)
         examples = evaluate.word_examples(lib, query, filter)
     report(
-        lambda: _document(found, examples),
+        lambda: word_document(found, examples),
         lambda: _print(found, examples),
         as_json=as_json,
         csv_file=csv_file,
     )
     drawing.draw_one(lambda form: evaluate.draw_words(found, form))
-
-
-def _document(found: WordEvaluation, examples: Sequence[WordExample]) -> dict[str, Any]:
-    document = asdict(found)
-    return document | {
-        "recalls": RECALLS.tolist(),
-        "least_recordings": MIN_RECORDINGS,
-        "examples": [asdict(example) for example in examples],
-    }
 
 
 def _print(found: WordEvaluation, examples: Sequence[WordExample]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from kinedex.calls import clip_views as calls_clip_views
 from kinedex.calls import clips as calls_clips
+from kinedex.calls import evaluations as calls_evaluations
 from kinedex.calls import export as calls_export
 from kinedex.calls import health as calls_health
 from kinedex.calls import imports as calls_imports
@@ -87,6 +88,10 @@ class Models(Group[SenderType]):
     list_confused_clips = CallMethod(calls_models.list_confused_clips)
     list_signatures = CallMethod(calls_models.list_signatures)
     fit = CallMethod(calls_models.request_fit)
+    list_evaluations = ListMethod(calls_evaluations.list_evaluations)
+    start_evaluation = CallMethod(calls_evaluations.start_evaluation)
+    evaluation = CallMethod(calls_evaluations.get_evaluation)
+    delete_evaluation = CallMethod(calls_evaluations.delete_evaluation)
 
 
 class Labels(Group[SenderType]):

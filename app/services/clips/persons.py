@@ -1,10 +1,10 @@
 """Forgetting a person: gait identifies people, so that a library must be able to forget them.
 
 One transaction removes the person's label from every clip, the name from whatever else names the
-person (`traces`: names and paths of files, metadata, lists of imported files), and every model that
-holds persons: after it no search and no recognition knows the person. A job fits the models again
-without them; until it is done, whatever needs those models asks the client to wait. Files keep
-their content.
+person (`traces`: names and paths of files, metadata, lists of imported files), every evaluation
+that names the person, and every model that holds persons: after it no search and no recognition
+knows the person. A job fits the models again without them; until it is done, whatever needs those
+models asks the client to wait. Files keep their content.
 """
 
 from __future__ import annotations
@@ -15,10 +15,11 @@ from app.errors import NotFound
 from app.kinedex_error import Place
 from app.services import fields
 from app.services.clips import traces
+from app.services.clips.anonymize import NameRemover
 from app.services.library.fitted_models import ModelKind, holds_persons
 from app.services.library.library import Library
 from app.services.training.models import enqueue_fit
-from app.store import keyed_calls, models
+from app.store import evaluations, keyed_calls, models
 from app.store.clips import labels
 from app.store.clips import repository as clips
 from app.store.database.engine import Tx
@@ -46,6 +47,7 @@ def _forget(tx: Tx, person: str) -> JobRecord:
         )
     traces.remove_name(tx, person, clips.forget_person(tx, person))
     models.remove(tx, _HOLDING_PERSONS)
+    evaluations.remove_where(tx, NameRemover(person).holds_name)
     keyed_calls.forget_answers(tx)
     return enqueue_fit(tx)
 

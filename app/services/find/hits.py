@@ -71,5 +71,5 @@ class HitPage:
 
 
 def milliseconds_since(began: float) -> float:
-    """Milliseconds since `began`, an earlier value of `time.perf_counter`."""
-    return (time.perf_counter() - began) * 1000.0
+    """Milliseconds since `began`, an earlier value of `time.perf_counter`, to a microsecond."""
+    return round((time.perf_counter() - began) * 1000.0, 3)

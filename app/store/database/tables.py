@@ -214,6 +214,22 @@ api_keys = Table(
     Column("revoked_at", UtcDateTime),
 )
 
+# Results of evaluations. They do not change when the library does.
+evaluations = Table(
+    "evaluations",
+    metadata,
+    Column("id", String, primary_key=True),
+    Column("kind", String, nullable=False),
+    json_column("options", nullable=False),
+    Column("library_version", BigInteger, nullable=False),
+    Column("library_size", Integer, nullable=False),
+    Column("seconds", Float, nullable=False),
+    json_column("figures", nullable=False),
+    json_column("document", nullable=False),
+    Column("created_at", UtcDateTime, nullable=False, index=True),
+    Index(None, "kind", "created_at"),
+)
+
 study_pairs = Table(
     "study_pairs",
     metadata,

@@ -1,4 +1,7 @@
-"""The texts of imports that may name a person: paths and names of files, labels, problems."""
+"""The texts of jobs that may name a person.
+
+These are paths and names of imported files, labels, problems, and the filters of evaluations.
+"""
 
 from __future__ import annotations
 
@@ -25,13 +28,13 @@ _CHANGE_ENTRY = update(import_entries).where(
     import_entries.c.job_id == bindparam("the_job"), import_entries.c.path == bindparam("the_path")
 )
 _JOBS = select(jobs.c.id, jobs.c.payload, jobs.c.detail, jobs.c.error).where(
-    jobs.c.kind == JobKind.IMPORT.value
+    jobs.c.kind.in_([JobKind.IMPORT.value, JobKind.EVALUATE.value])
 )
 _CHANGE_JOB = update(jobs).where(jobs.c.id == bindparam("the_id"))
 
 
 def rewrite(tx: Tx, new: Rewrite) -> None:
-    """Replace the texts of all imports and of their files."""
+    """Replace the texts of all imports and of their files, and those of all evaluations."""
     for job in tx.execute(_JOBS).all():
         before = {"payload": job.payload, "detail": job.detail, "error": job.error}
         now = new(None, before)

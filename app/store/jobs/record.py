@@ -17,6 +17,8 @@ class JobKind(StrEnum):
     """Unpack an archive into clips, each with its own ingest job."""
     FIT = "fit"
     """Fit the library's models."""
+    EVALUATE = "evaluate"
+    """Judge the methods on the library's labels."""
 
 
 class JobState(StrEnum):

@@ -30,7 +30,7 @@ def get_space(
     min_duration: float | None = None,
     max_duration: float | None = None,
     space: Literal["symbols", "vectors"] | None = None,
-    dimensions: Literal["2", "3"] | None = None,
+    dimensions: int | None = None,
     limit: int | None = None,
     filter: Filter | Mapping[str, Any] | None = None,
 ) -> Call[SpaceMap]:

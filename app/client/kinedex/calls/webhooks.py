@@ -43,7 +43,8 @@ def create_webhook(
     url: Where events are sent by POST. `https://`, or `http://` on this machine.
     events: Events that are sent: `ingest.succeeded`, `ingest.failed`, `ingest.canceled`,
         `import.succeeded`, `import.failed`, `import.canceled`, `fit.succeeded`, `fit.failed`,
-        `fit.canceled`. An empty list: all events.
+        `fit.canceled`, `evaluate.succeeded`, `evaluate.failed`, `evaluate.canceled`. An empty
+        list: all events.
     secret: `whsec_` and 24 to 64 random bytes in base64. Default: a new one.
     enabled: False: nothing is sent until it is switched on. Default: True.
     """

@@ -13,6 +13,11 @@ Choice: TypeAlias = Literal["left", "right", "same"]
 ClipState: TypeAlias = Literal["queued", "processing", "ready", "failed"]
 
 
+EvaluationKind: TypeAlias = Literal[
+    "recognition", "retrieval", "words", "keyposes", "low-dimensional", "symbols"
+]
+
+
 ExportContent: TypeAlias = Literal["positions", "angles", "segments", "gait", "strides", "cycles"]
 
 
@@ -45,7 +50,7 @@ FileOutcome: TypeAlias = Literal[
 ]
 
 
-JobKind: TypeAlias = Literal["ingest", "import", "fit"]
+JobKind: TypeAlias = Literal["ingest", "import", "fit", "evaluate"]
 
 
 JobState: TypeAlias = Literal["queued", "processing", "succeeded", "failed", "canceled"]

@@ -1,7 +1,13 @@
 /** What the page of the work shows, in its address. */
 import { choice, text } from "$/core/query";
 
-export const KINDS = { any: "All", import: "Imports", ingest: "Analyses", fit: "Fits" } as const;
+export const KINDS = {
+  any: "All",
+  import: "Imports",
+  ingest: "Analyses",
+  fit: "Fits",
+  evaluate: "Evaluations",
+} as const;
 export type Kind = keyof typeof KINDS;
 
 export const LIVE = {
@@ -14,6 +20,7 @@ const TITLES: Readonly<Record<string, string>> = {
   import: "Import",
   ingest: "Analysis",
   fit: "Fit of the models",
+  evaluate: "Evaluation",
 };
 export const jobTitle = (kind: string): string => TITLES[kind] ?? kind;
 

@@ -6,6 +6,12 @@ type Quality = Schemas["Quality"];
 
 const percent = (share: number): string => `${Math.round(share * 100)} %`;
 
+/** How somebody is called of whom there are only clips without a name. */
+export const NAMELESS = "this person";
+
+const capital = (text: string): string =>
+  text === NAMELESS ? text.charAt(0).toUpperCase() + text.slice(1) : text;
+
 export function inSentences(quality: Quality, person: string, task: string): readonly string[] {
   return [
     origin(quality, person, task),
@@ -20,7 +26,7 @@ function origin(
   person: string,
   task: string,
 ): string {
-  if (kind === "seen") return `${person} did this task: it is made of the takes of it.`;
+  if (kind === "seen") return `${capital(person)} did this task: it is made of the takes of it.`;
   const learned = `It is made of ${plural(persons.length, "person", "persons")} who did "${label(task)}", and of ${plural(tasks.length, "task")} that ${person} did.`;
   return follows
     ? `${learned} It follows the take of ${follows}, since takes of it differ much.`

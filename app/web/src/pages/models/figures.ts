@@ -14,17 +14,22 @@ export interface Table {
   readonly rows: readonly Row[];
 }
 
+/** The name of our own method: its row stands out. */
+export const OURS = "Kinedex";
+
 const METHODS: Readonly<Record<string, string>> = {
-  default: "Kinedex",
+  default: OURS,
   multilinear: "Multilinear (Vasilescu)",
   perera: "Weighted distances (Perera)",
   signatures: "Signatures (Vasilescu)",
   pca: "Flat PCA",
+  "mean-motion": "Mean motion",
   prior: "Always the most frequent",
   cca: "Correlated space (Takano)",
   "cca-score": "Correlated space, by score",
   "cca-distance": "Correlated space, by distance",
   "cca-pinv": "Correlated space, as printed",
+  "cca-symbol": "Correlated space, symbol to symbol",
 };
 
 export const methodName = (method: string): string => METHODS[method] ?? method;

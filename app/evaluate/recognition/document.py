@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from app.evaluate import RecognitionEvaluation
 from app.evaluate.recognition.clips import names_of
 from app.evaluate.recognition.perera import PereraEvaluation
-from app.evaluate.recognition.results import HeldOut
+from app.evaluate.recognition.results import HeldOut, RecognitionEvaluation
 from app.evaluate.recognition.shares import Category, Recognized, Share, Unknown
 
 
-def document(found: RecognitionEvaluation) -> dict[str, Any]:
+def recognition_document(found: RecognitionEvaluation) -> dict[str, Any]:
     """All results, with the number of clips of each share."""
     return {
         "clips": {

@@ -1,0 +1,1 @@
+"""Evaluations: requests, the options of each kind, and the kept results. `app.evaluate` judges."""
