@@ -28,6 +28,7 @@ from app.api.loading import Loading
 from app.api.metrics import install_metrics
 from app.api.openapi import describe
 from app.api.routes import (
+    alignment,
     clip_views,
     clips,
     export,
@@ -90,6 +91,7 @@ Times are ISO 8601 in UTC, durations seconds. Every failure is a problem (RFC 94
 ROUTES = (
     clips,
     clip_views,
+    alignment,
     keyposes,
     low_dimensional,
     export,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from kinedex.calls import alignment as calls_alignment
 from kinedex.calls import clip_views as calls_clip_views
 from kinedex.calls import clips as calls_clips
 from kinedex.calls import export as calls_export
@@ -43,6 +44,7 @@ class Clips(Group[SenderType]):
     motion_array = CallMethod(calls_clip_views.get_motion_array)
     descriptor = CallMethod(calls_clip_views.get_descriptor)
     thumbnail = CallMethod(calls_clip_views.get_thumbnail)
+    alignment = CallMethod(calls_alignment.get_alignment)
     keyposes = CallMethod(calls_keyposes.get_keyposes)
     name_keyposes = CallMethod(calls_keyposes.name_keyposes)
     forget_named_keyposes = CallMethod(calls_keyposes.forget_named_keyposes)
