@@ -30,7 +30,7 @@ def test_two_clips_are_aligned_step_by_step(
     means = [sum(column) / len(found["path"]) for column in columns]
     assert found["mean_differences"] == pytest.approx(means, abs=1e-3)
     assert found["mean_differences"][found["joints"].index("hips")] == 0
-    assert 0.5 < found["body_length"] < 2
+    assert all(0.5 < length < 2 for length in found["body_lengths"])
 
 
 def test_peaks_are_steps_of_the_path(

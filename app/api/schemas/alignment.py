@@ -14,7 +14,8 @@ from app.services.comparison.alignment import AlignedClips, Part
 _TIME_DIGITS, _LENGTH_DIGITS = 6, 4
 """Decimals of seconds and of meters: a tenth of a millimeter is less than any recording knows."""
 
-Times = Annotated[list[float], Field(min_length=2, max_length=2)]
+Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
+"""A number of the first and of the second clip."""
 
 
 class AlignmentQuery(Incoming):
@@ -38,7 +39,7 @@ class AlignmentQuery(Incoming):
 class Peak(Outgoing):
     """A moment at which the two motions differ much."""
 
-    times: Times = Field(description="Seconds from the start of the first and the second clip.")
+    times: Pair = Field(description="Seconds from the start of the first and the second clip.")
     difference: float = Field(description="Mean over the joints, meters.")
     joint: JointRole = Field(description="The joint that differs most.")
     joint_difference: float = Field(description="Meters.")
@@ -50,11 +51,11 @@ class Alignment(Outgoing):
     distance: float = Field(
         description="Mean cost of a step. A search with `method=dtw` has the same distance."
     )
-    body_length: float = Field(
-        description="Meters: torso, neck to head, and shin; the mean of both bodies. Both are "
-        "scaled to it before their joints are compared."
+    body_lengths: Pair = Field(
+        description="Meters: torso, neck to head, and shin. Both bodies are scaled to the mean of "
+        "these two lengths before their joints are compared."
     )
-    path: list[Times] = Field(
+    path: list[Pair] = Field(
         description="(steps, 2): seconds from the start of the first and of the second clip. "
         "Neither ever falls."
     )
@@ -73,7 +74,7 @@ class Alignment(Outgoing):
         """The alignment as the API shows it."""
         return cls(
             distance=found.distance,
-            body_length=found.body_length,
+            body_lengths=[round(length, _LENGTH_DIGITS) for length in found.body_lengths],
             path=plain(found.times.round(_TIME_DIGITS)),
             joints=list(SUN_ROLES),
             differences=plain(found.differences.round(_LENGTH_DIGITS)),

@@ -48,13 +48,13 @@ class Part:
 class AlignedClips:
     """Two clips along their warping path of k steps.
 
-    distance: as of a search by the method `dtw`. body_length: meters, the mean of both bodies, to
-    which both are scaled. times: (k, 2) seconds from the start of each clip. differences: (k, 13)
+    distance: as of a search by the method `dtw`. body_lengths: meters, of both bodies; both are
+    scaled to their mean. times: (k, 2) seconds from the start of each clip. differences: (k, 13)
     meters, of the joints in SUN_ROLES order. peaks: (p,) the steps of greatest mean difference.
     """
 
     distance: float
-    body_length: float
+    body_lengths: tuple[float, float]
     times: FloatArray
     differences: FloatArray
     peaks: IntArray
@@ -79,12 +79,12 @@ def align_clips(lib: Library, one: Part, other: Part) -> AlignedClips:
     with _renamed(OTHER_FIELDS):
         theirs = _side(lib, other)
     found = align(ours.features, theirs.features)
-    size = (ours.body_length + theirs.body_length) / 2
+    sizes = (ours.body_length, theirs.body_length)
     return AlignedClips(
         distance=found.distance,
-        body_length=size,
+        body_lengths=sizes,
         times=np.add(found.times, (ours.start, theirs.start)),
-        differences=found.differences * size,
+        differences=found.differences * np.mean(sizes),
         peaks=peaks(found, MAX_PEAKS),
     )
 

@@ -37,7 +37,7 @@ def test_times_go_from_start_to_end_of_both(ready_library: Library, clip_of: Fin
     np.testing.assert_allclose(found.times[-1], [walk.duration, kick.duration], atol=0.15)
     assert (np.diff(found.times, axis=0) >= 0).all()
     lengths = [body_length(load_motion(ready_library, clip)) for clip in (walk, kick)]
-    assert found.body_length == pytest.approx(np.mean(lengths))
+    assert found.body_lengths == pytest.approx(lengths)
 
 
 def test_both_clips_have_equal_parts_in_the_result(
@@ -49,6 +49,7 @@ def test_both_clips_have_equal_parts_in_the_result(
     assert there.distance == pytest.approx(back.distance)
     np.testing.assert_allclose(there.times, back.times[:, ::-1])
     np.testing.assert_allclose(there.differences, back.differences)
+    assert there.body_lengths == back.body_lengths[::-1]
 
 
 def test_a_part_is_found_in_its_own_clip(ready_library: Library, clip_of: FindClip) -> None:

@@ -29,8 +29,8 @@ class Alignment(Record):
     """Two clips along their warping path: steps, joints, and how far the joints are apart.
 
     distance: Mean cost of a step. A search with `method=dtw` has the same distance.
-    body_length: Meters: torso, neck to head, and shin; the mean of both bodies. Both are scaled
-    to it before their joints are compared.
+    body_lengths: Meters: torso, neck to head, and shin. Both bodies are scaled to the mean of
+    these two lengths before their joints are compared.
     path: (steps, 2): seconds from the start of the first and of the second clip. Neither ever
     falls.
     joints: The 13 joints of figure 2 in Sun 2011.
@@ -41,7 +41,7 @@ class Alignment(Record):
     """
 
     distance: float
-    body_length: float
+    body_lengths: list[float]
     path: Array
     joints: list[JointRole]
     differences: Array
