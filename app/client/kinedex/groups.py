@@ -91,12 +91,14 @@ class Models(Group[SenderType]):
 
 
 class Labels(Group[SenderType]):
-    """Persons, tasks, words, metadata and folders of the library."""
+    """Persons, tasks, words, sources, licenses, metadata and folders of the library."""
 
     persons = ListMethod(calls_labels.list_persons)
     forget_person = CallMethod(calls_labels.forget_person)
     tasks = ListMethod(calls_labels.list_tasks)
     words = ListMethod(calls_labels.list_words)
+    sources = ListMethod(calls_labels.list_sources)
+    licenses = ListMethod(calls_labels.list_licenses)
     metadata = ListMethod(calls_labels.list_metadata)
     folders = ListMethod(calls_labels.list_folders)
     manifest = CallMethod(calls_labels.get_manifest)

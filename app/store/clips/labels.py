@@ -35,12 +35,18 @@ class LabelKind(StrEnum):
     """The action in the clip."""
     WORD = "word"
     """A word that describes the clip."""
+    SOURCE = "source"
+    """Where the clip comes from."""
+    LICENSE = "license"
+    """The license of the clip."""
 
 
 _KINDS: dict[LabelKind, tuple[ColumnElement[Any], FromClause]] = {
     LabelKind.PERSON: (clips.c.person, clips),
     LabelKind.TASK: (clips.c.task, clips),
     LabelKind.WORD: (clip_words.c.word, clip_words.join(clips)),
+    LabelKind.SOURCE: (clips.c.source, clips),
+    LabelKind.LICENSE: (clips.c.license, clips),
 }
 
 
