@@ -41,6 +41,7 @@ from app.api.routes import (
     models,
     poses,
     recognize,
+    recordings,
     search,
     segments,
     session,
@@ -90,6 +91,7 @@ Times are ISO 8601 in UTC, durations seconds. Every failure is a problem (RFC 94
 """
 ROUTES = (
     clips,
+    recordings,
     clip_views,
     alignment,
     keyposes,

@@ -15,6 +15,7 @@ from kinedex.calls import low_dimensional as calls_low_dimensional
 from kinedex.calls import models as calls_models
 from kinedex.calls import poses as calls_poses
 from kinedex.calls import recognize as calls_recognize
+from kinedex.calls import recordings as calls_recordings
 from kinedex.calls import search as calls_search
 from kinedex.calls import segments as calls_segments
 from kinedex.calls import service as calls_service
@@ -38,8 +39,8 @@ class Clips(Group[SenderType]):
     update = CallMethod(calls_clips.update_clip)
     delete = CallMethod(calls_clips.delete_clip)
     file = CallMethod(calls_clips.get_file)
-    audio = CallMethod(calls_clips.get_audio)
-    delete_audio = CallMethod(calls_clips.delete_audio)
+    audio = CallMethod(calls_recordings.get_audio)
+    delete_audio = CallMethod(calls_recordings.delete_audio)
     motion = CallMethod(calls_clip_views.get_motion)
     motion_array = CallMethod(calls_clip_views.get_motion_array)
     descriptor = CallMethod(calls_clip_views.get_descriptor)

@@ -330,26 +330,3 @@ def get_file(clip_id: str) -> Call[bytes]:
         read_bytes,
         accept="*/*",
     )
-
-
-def get_audio(clip_id: str) -> Call[bytes]:
-    """The recording that goes with a clip, as an attachment."""
-    return Call(
-        "get_audio",
-        "GET",
-        path_of("/v1/clips/{clip_id}/audio", clip_id=clip_id),
-        read_bytes,
-        accept="*/*",
-    )
-
-
-def delete_audio(clip_id: str) -> Call[Clip]:
-    """Delete the recording that goes with a clip. The clip is analyzed again."""
-    from kinedex.types.clips import Clip
-
-    return Call(
-        "delete_audio",
-        "DELETE",
-        path_of("/v1/clips/{clip_id}/audio", clip_id=clip_id),
-        record(Clip),
-    )
