@@ -33,6 +33,7 @@ from app.analysis.descriptors.pose_cover import pose_cover
 from app.analysis.descriptors.windows import WINDOW_SCALES, window_arrays
 from app.analysis.energy.energy import energies
 from app.analysis.keyposes.keyposes import T1, T2, find_keyposes
+from app.analysis.measures import Measures, measure
 from app.analysis.rhythm.onsets import Onsets
 from app.analysis.rhythm.rhythm import NO_RHYTHM_INPUT, RhythmInput, find_rhythm, rhythm_arrays
 from app.analysis.segments.keypose_arrays import keypose_arrays
@@ -46,7 +47,7 @@ from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray
 from app.numerics.tensors.rank1 import Rank1
 
-ANALYSIS_VERSION = 5
+ANALYSIS_VERSION = 6
 """Raise this number if the content of an array changes. Older clips are then analyzed again."""
 
 
@@ -55,7 +56,8 @@ class Analysis:
     """A motion and its arrays by name (see the module).
 
     audio_offset: the time of the motion, in seconds, at which its audio recording begins; None
-    without a recording or if the time is unknown. cautions: doubts about the recording.
+    without a recording or if the time is unknown. cautions: doubts about the recording. measures:
+    None if only the arrays of a search were computed.
     stage_seconds: how long each stage took, for the operator; it is not part of the result.
     """
 
@@ -63,6 +65,7 @@ class Analysis:
     arrays: dict[str, NDArray[Any]]
     audio_offset: float | None = None
     cautions: tuple[Caution, ...] = ()
+    measures: Measures | None = None
     stage_seconds: Mapping[str, float] = field(default_factory=dict, compare=False)
 
 
@@ -99,7 +102,8 @@ def analyze(
         arrays["pose_cover"] = pose_cover(arrays["role_positions"], keyposes)
         arrays |= keypose_arrays(keyposes, arrays["features_10hz"])
     offset = None if rhythm.offset is None else rhythm.offset.seconds
-    return Analysis(motion, arrays, offset, rhythm.cautions, times.seconds)
+    measures = measure(track, rms_energies, rhythm.beats.tempo)
+    return Analysis(motion, arrays, offset, rhythm.cautions, measures, times.seconds)
 
 
 def describe_for_search(motion: Motion, names: Collection[str] | None = None) -> Analysis:

@@ -28,6 +28,7 @@ from app.api.loading import Loading
 from app.api.metrics import install_metrics
 from app.api.openapi import describe
 from app.api.routes import (
+    alignment,
     clip_views,
     clips,
     evaluations,
@@ -41,6 +42,7 @@ from app.api.routes import (
     models,
     poses,
     recognize,
+    recordings,
     search,
     segments,
     session,
@@ -91,7 +93,9 @@ Times are ISO 8601 in UTC, durations seconds. Every failure is a problem (RFC 94
 """
 ROUTES = (
     clips,
+    recordings,
     clip_views,
+    alignment,
     keyposes,
     low_dimensional,
     export,

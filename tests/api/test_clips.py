@@ -17,6 +17,7 @@ from tests.live import Live
 CLIP_FIELDS = {
     *("id", "name", "state", "format", "sha256", "person", "task", "words", "license"),
     *("source", "frames", "frame_rate", "declared_frame_rate", "duration", "start_offset"),
+    *("travel", "speed", "energy", "tempo"),
     *("joints", "roles", "missing_roles", "warnings", "created_at", "error"),
     *("has_audio", "audio_offset", "reanalysis", "path", "metadata"),
 }

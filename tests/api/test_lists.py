@@ -11,7 +11,15 @@ from app.api.schemas.clips import Clip
 from app.api.schemas.search import Hit
 from tests.api.conftest import assert_problem
 
-LISTS = ["/v1/clips", "/v1/jobs", "/v1/persons", "/v1/tasks", "/v1/words"]
+LISTS = [
+    "/v1/clips",
+    "/v1/jobs",
+    "/v1/persons",
+    "/v1/tasks",
+    "/v1/words",
+    "/v1/sources",
+    "/v1/licenses",
+]
 LISTS += ["/v1/studies/low-dimensional/pairs"]
 SEARCHES = ["motion", "words", "pose"]
 

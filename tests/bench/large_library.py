@@ -20,6 +20,7 @@ from app.errors import BadContent
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalize
 from app.store.clips.index_feed import IndexedClip
+from app.store.clips.measures import FOUND
 from app.store.clips.record import ClipState
 from app.store.database import tables as t
 from app.store.database.blobs import to_blob
@@ -70,10 +71,16 @@ def samples(every: int = 3) -> tuple[Sample, ...]:
     return tuple(found)
 
 
-def many_clips(count: int, seed: int = 0) -> Iterator[tuple[Sample, IndexedClip]]:
-    """Yield `count` copies of the samples, each with its own vector and labels."""
+def many_clips(
+    count: int, seed: int = 0, real: Sequence[Sample] = ()
+) -> Iterator[tuple[Sample, IndexedClip]]:
+    """Yield `count` copies of samples, each with its own vector, labels and measures.
+
+    real: the samples; default: those of the real clips.
+    """
     rng = np.random.default_rng(seed)
-    real = samples()
+    measures = np.random.default_rng(seed)
+    real = real or samples()
     vectors = np.stack([sample.arrays[VECTOR] for sample in real])
     for first in range(0, count, AT_ONCE):
         chosen = rng.integers(len(real), size=min(AT_ONCE, count - first))
@@ -94,16 +101,19 @@ def many_clips(count: int, seed: int = 0) -> Iterator[tuple[Sample, IndexedClip]
                     duration=real[sample].duration,
                     words=frozenset(f"word{word}" for word in words[offset]),
                     array=made[offset],
+                    measures=(30.0, 22.0, *measures.gamma(2.0, size=3).tolist(), 120.0),
                 ),
             )
 
 
-def fill(store: Store, count: int, names: Sequence[str] | None = None) -> None:
+def fill(
+    store: Store, count: int, names: Sequence[str] | None = None, real: Sequence[Sample] = ()
+) -> None:
     """Write `count` ready clips into an empty store.
 
-    names: the arrays to write; default: all arrays that searches read.
+    names: the arrays to write; default: all arrays that searches read. real: as of `many_clips`.
     """
-    clips = enumerate(many_clips(count), 1)
+    clips = enumerate(many_clips(count, real=real), 1)
     while batch := list(itertools.islice(clips, AT_ONCE)):
         with store.write() as tx:
             tx.execute(insert(t.clips), [clip_row(number, made) for number, (_, made) in batch])
@@ -129,10 +139,9 @@ def clip_row(number: int, clip: IndexedClip) -> dict[str, Any]:
         "license": clip.license,
         "source": clip.source,
         "frames": round(clip.duration * 30),
-        "frame_rate": 30.0,
         "declared_frame_rate": 30.0,
         "duration": clip.duration,
-        "joints": 22,
+        **dict(zip(FOUND, clip.measures, strict=True)),
         "metres_per_unit": 0.01,
         "roles": {"hips": "Hips", "head": "Head", "neck": "Neck"},
         "missing_roles": [],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from hypothesis import strategies as st
 
 from app.store.clips.filter import ClipFilter, MetadataCondition
 from app.store.clips.index_feed import IndexedClip
+from app.store.clips.measures import FOUND, MEASURES
 
 PERSONS = ("ada", "bruno", "chika", None)
 TASKS = ("walk", "run", None)
@@ -29,6 +31,7 @@ LABELS = st.fixed_dictionaries(
         "license": st.sampled_from(("CC0", None)),
         "source": st.sampled_from(("studio", "field")),
         "duration": st.sampled_from((0.0, 1.0, 2.5)),
+        "measures": st.tuples(*[st.sampled_from((math.nan, 0.0, 1.0, 2.5))] * len(FOUND)),
         "words": st.frozensets(st.sampled_from(WORDS), max_size=3),
         "folder": st.sampled_from((None, "", "cmu", "cmu/02", "cmu 2", "CMU/02")),
         "metadata": st.dictionaries(
@@ -55,6 +58,9 @@ FILTERS = st.builds(
     word=st.lists(st.sampled_from((*WORDS, "unheard")), max_size=2).map(tuple),
     min_duration=st.sampled_from((None, 1.0, 2.0)),
     max_duration=st.sampled_from((None, 1.0, 0.5)),
+    min_speed=st.sampled_from((None, None, 0.0, 1.0)),
+    max_speed=st.sampled_from((None, None, 1.0)),
+    max_tempo=st.sampled_from((None, None, 2.0)),
     folder=st.lists(st.sampled_from(("cmu", "cmu/02", "none")), max_size=2).map(tuple),
     not_folder=st.lists(st.sampled_from(("cmu", "cmu/02", "none")), max_size=1).map(tuple),
     metadata=st.lists(CONDITIONS, max_size=2).map(tuple),
@@ -75,9 +81,22 @@ def passes(clip: IndexedClip, clip_filter: ClipFilter) -> bool:
         return False
     if not all(_meets(clip, condition) for condition in clip_filter.metadata):
         return False
-    if clip_filter.min_duration is not None and clip.duration < clip_filter.min_duration:
+    return all(
+        _is_within(
+            dict(zip(MEASURES, (clip.duration, *clip.measures), strict=True))[name],
+            getattr(clip_filter, f"min_{name}"),
+            getattr(clip_filter, f"max_{name}"),
+        )
+        for name in MEASURES
+    )
+
+
+def _is_within(value: float, least: float | None, most: float | None) -> bool:
+    if least is None and most is None:
+        return True
+    if math.isnan(value) or (least is not None and value < least):
         return False
-    return clip_filter.max_duration is None or clip.duration <= clip_filter.max_duration
+    return most is None or value <= most
 
 
 def _is_in(folder: str | None, parents: tuple[str, ...]) -> bool:

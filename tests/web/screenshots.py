@@ -38,6 +38,7 @@ def _addresses(clip_id: str) -> Iterator[tuple[str, str]]:
     yield "gallery", "/"
     yield "gallery-chosen", f"/?size=s&sel={clip_id}"
     yield "clip", f"/clips/{clip_id}?t=2&ghosts=1&trails=1"
+    yield "compare-two", f"/compare?a={clip_id}&b={clip_id}&b_from=0.5&t=1"
     yield "map-lit", "/map?q=wave&pick=kick"
     yield "todo-unlabeled", "/todo?kind=unlabeled"
     yield "models-people", "/models?tab=persons"

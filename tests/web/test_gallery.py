@@ -61,6 +61,44 @@ def test_filters_are_addresses(page: Page) -> None:
     expect(cards(page)).to_have_count(12)
 
 
+def test_measures_filter_and_sort(page: Page, demo_service: Live) -> None:
+    speeds = {clip["name"]: clip["speed"] for clip in clips_of(demo_service)}
+    page.goto("/?sort=-speed&size=l")
+    expect(cards(page)).to_have_count(12)
+    expect(page.get_by_role("status").first).to_have_text("12 clips")
+    assert all("walk" in name for name in names(page)[:4])
+    page.get_by_role("button", name="Measures").click()
+    page.get_by_label("Speed, m/s, at least").fill("0.5")
+    page.keyboard.press("Enter")
+    expect(cards(page)).to_have_count(4)
+    expect(page.get_by_role("status").first).to_have_text("4 clips")
+    assert query_of(page)["speed_min"] == ["0.5"]
+    assert all(speeds[name] >= 0.5 for name in names(page))
+    page.reload()
+    expect(cards(page)).to_have_count(4)
+    expect(page.get_by_role("button", name="Measures 1")).to_be_visible()
+    page.get_by_role("button", name="Clear all").click()
+    expect(cards(page)).to_have_count(12)
+
+
+def test_sources_and_licenses_are_menus_with_counts(browser: Browser, idle_service: Live) -> None:
+    with idle_service.client() as client:
+        for number, source in enumerate(("lab 3", "lab 3", "field")):
+            files = {"file": ("a.bvh", f"HIERARCHY\nROOT of_{number}\n".encode())}
+            labels = {"source": source, "license": "CC0-1.0", "name": f"from {source}"}
+            client.post("/v1/clips", files=files, data=labels)
+    with opened(browser, idle_service.url) as page:
+        page.goto("/?q=from")
+        expect(cards(page)).to_have_count(3)
+        page.get_by_role("button", name="Source").click()
+        page.get_by_role("group", name="Source").get_by_label(re.compile("lab 3")).check()
+        expect(cards(page)).to_have_count(2)
+        assert query_of(page)["source"] == ["lab 3"]
+        page.get_by_role("button", name="License").click()
+        group = page.get_by_role("group", name="License")
+        expect(group.get_by_role("listitem").filter(has_text="CC0-1.0")).to_contain_text("3")
+
+
 def test_order_and_size_are_addresses(page: Page) -> None:
     page.goto("/?sort=name&size=l")
     expect(cards(page)).to_have_count(12)
@@ -127,6 +165,7 @@ def test_ten_thousand_clips_are_scrolled_through(page: Page) -> None:
         last = min(first + limit, MANY)
         items = [one | {"id": f"clip_{n}", "name": f"take {n}"} for n in range(first, last)]
         page_of_clips = {"items": items, "next": str(last) if last < MANY else None}
+        page_of_clips |= {"total": MANY, "total_is_exact": True}
         route.fulfill(content_type="application/json", body=json.dumps(page_of_clips))
 
     page.route(re.compile(r"/v1/clips\?"), clips)
@@ -134,12 +173,13 @@ def test_ten_thousand_clips_are_scrolled_through(page: Page) -> None:
         "**/thumbnail.svg", lambda route: route.fulfill(content_type="image/svg+xml", body=SVG)
     )
     page.goto("/?size=s")
-    expect(page.get_by_role("status").first).to_have_text("100 clips so far")
+    expect(page.get_by_role("status").first).to_have_text(f"{MANY:,} clips")
     page.wait_for_function(
-        """() => {
+        """(last) => {
             scrollTo(0, document.documentElement.scrollHeight);
-            return !document.querySelector("main [role=status]").textContent.includes("so far");
+            return document.querySelector(`[aria-label^="${last}"]`) !== null;
         }""",
+        arg=f"take {MANY - 1},",
         polling=50,
     )
     page.evaluate("scrollTo(0, document.documentElement.scrollHeight)")

@@ -73,6 +73,17 @@ def test_clips_are_points_colored_by_what_is_chosen(page: Page) -> None:
     expect(legend).to_be_visible()
 
 
+def test_measures_color_the_points(page: Page) -> None:
+    pictures = set()
+    for measure, title in (("speed", "Speed, m/s"), ("energy", "Energy, body lengths/s")):
+        open_map(page, f"?color={measure}")
+        legend = page.get_by_role("region", name=f"Legend: {title}")
+        expect(legend.locator(".ramp")).to_be_visible()
+        assert colors_of(plot(page)) > 20
+        pictures.add(plot(page).screenshot())
+    assert len(pictures) == 2
+
+
 def test_the_hits_of_a_query_are_lit(page: Page) -> None:
     page.goto("/search?q=kick")
     page.get_by_role("link", name="On the map").click()

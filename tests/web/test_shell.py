@@ -19,7 +19,7 @@ from tests.web.browser import LOOKS, Scheme, opened
 
 pytestmark = pytest.mark.slow
 
-NAMED = ["", *(name for name in PAGE_NAMES if name not in {"clips", "study"})]
+NAMED = ["", *(name for name in PAGE_NAMES if name not in {"clips", "compare", "study"})]
 """The pages that the navigation lists, in its order."""
 
 

@@ -26,6 +26,9 @@ WARPING_RATE = 10.0
 TRAVEL_WEIGHT = 2.0
 """The weight of the hips' velocity and the yaw rate in warping."""
 
+POSITIONS = slice(0, 39)
+"""The columns of the positions of the 13 joints in the body frame, in body lengths."""
+
 TRAVEL = slice(78, 82)
 """The columns of the hips' velocity and the yaw rate."""
 

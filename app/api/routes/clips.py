@@ -13,7 +13,7 @@ from starlette.datastructures import UploadFile
 from app.api.bodies import read_form, require_json, required
 from app.api.deps import Lib, reads, writes
 from app.api.guard.admission import changes, quick
-from app.api.openapi import BINARY, AudioClipId, ClipId, body, refusals
+from app.api.openapi import BINARY, ClipId, body, refusals
 from app.api.queries import file_of
 from app.api.schemas.clips import Clip, ClipCreated, ClipForm, ClipList, ClipPatch, ClipQuery
 from app.api.sparse import ChosenFields, sparse_item, sparse_page
@@ -32,7 +32,7 @@ FILES = {
     "skeleton": "The ASF file that an AMC file needs.",
     "audio": "The recording that goes with the motion: WAV, FLAC, OGG or MP3.",
 }
-_ORIGINAL = {
+ORIGINAL = {
     "content": {"application/octet-stream": BINARY},
     "description": "The original bytes.",
 }
@@ -135,38 +135,18 @@ def delete_clip(lib: Lib, clip_id: ClipId) -> None:
     dependencies=[reads, quick],
     response_class=FileResponse,
     responses={
-        200: _ORIGINAL,
+        200: ORIGINAL,
         304: UNCHANGED,
         **refusals(404),
     },
 )
 def get_file(lib: Lib, request: Request, clip_id: ClipId) -> FileResponse:
     """The original file, as an attachment: a browser must not show foreign content as a page."""
-    return _attachment(request, clips.open_file(lib, clip_id), clip_id)
+    return attachment(request, clips.open_file(lib, clip_id), clip_id)
 
 
-@router.get(
-    "/{clip_id}/audio",
-    dependencies=[reads, quick],
-    response_class=FileResponse,
-    responses={
-        200: _ORIGINAL,
-        304: UNCHANGED,
-        **refusals(404),
-    },
-)
-def get_audio(lib: Lib, request: Request, clip_id: AudioClipId) -> FileResponse:
-    """The recording that goes with a clip, as an attachment."""
-    return _attachment(request, clips.open_recording(lib, clip_id), clip_id)
-
-
-@router.delete("/{clip_id}/audio", dependencies=[writes, changes], responses=refusals(404))
-def delete_audio(lib: Lib, clip_id: AudioClipId) -> Clip:
-    """Delete the recording that goes with a clip. The clip is analyzed again."""
-    return Clip.model_validate(clips.remove_recording(lib, clip_id))
-
-
-def _attachment(request: Request, file: StoredFile, clip_id: str) -> FileResponse:
+def attachment(request: Request, file: StoredFile, clip_id: str) -> FileResponse:
+    """A stored file of a clip as an attachment, with an ETag. Raises ClipNotFound."""
     tag = f'"{file.sha256}"'
     validate(request, tag)
     try:

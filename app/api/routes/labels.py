@@ -1,4 +1,4 @@
-"""Persons, tasks, words, metadata and folders of the library, with counts."""
+"""Persons, tasks, words, sources, licenses, metadata and folders of the library, with counts."""
 
 from __future__ import annotations
 
@@ -92,6 +92,20 @@ def list_words(lib: Lib, query: Annotated[WordListQuery, Query()]) -> NamedCount
     found = tuple(suggestions.complete(lib, query.q, limit))
     # A full page may be the first of several, which nobody counts.
     page = Page(found, None).counted(Total(len(found), is_exact=len(found) < limit))
+    return NamedCounts.model_validate(page)
+
+
+@router.get("/sources", dependencies=[quick])
+def list_sources(lib: Lib, query: Annotated[LabelPage, Query()]) -> NamedCounts:
+    """Sources of clips, with the number of clips from each."""
+    page = labels.page(lib, LabelKind.SOURCE, query.limit, query.cursor)
+    return NamedCounts.model_validate(page)
+
+
+@router.get("/licenses", dependencies=[quick])
+def list_licenses(lib: Lib, query: Annotated[LabelPage, Query()]) -> NamedCounts:
+    """Licenses, with the number of clips of each."""
+    page = labels.page(lib, LabelKind.LICENSE, query.limit, query.cursor)
     return NamedCounts.model_validate(page)
 
 

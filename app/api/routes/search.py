@@ -119,7 +119,7 @@ async def _composed_query(request: Request) -> ComposedQuery:
 @router.post(
     "",
     dependencies=[reads, Depends(_composed_query), heavy],
-    responses=refusals(400, 404, 409, 413, 415, 503, 507),
+    responses=refusals(400, 404, 413, 415, 503, 507, ClipNotReady, ModelNotFitted, NotEnoughLabels),
     response_model=ComposedHits,
     openapi_extra=body(
         model=ComposedSearch,

@@ -155,6 +155,14 @@ Roles = Annotated[
 ]
 """Joint names by joint role. Two names are for the middle of two joints."""
 Seconds = Annotated[float, Field(ge=0, le=1e6)]
+Measure = Annotated[float, Field(ge=0, le=1e6)]
+"""A bound of a measure in a filter."""
+
+TRAVEL = "Meters that the hips travel over the floor, forth and back."
+SPEED = "Mean speed of the hips over the floor, meters per second."
+ENERGY = "Mean energy: root mean square speed of the joints, body lengths per second."
+TEMPO = "Beats per minute."
+"""What the measures of a clip mean."""
 
 PROBABILITY_DIGITS = 4
 """Decimals of a probability. No calibration on held-out clips can justify more."""

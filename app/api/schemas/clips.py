@@ -9,6 +9,10 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, ConfigDict, Field, Json
 
 from app.api.schemas.base import (
+    ENERGY,
+    SPEED,
+    TEMPO,
+    TRAVEL,
     Cursor,
     Fields,
     FormWords,
@@ -42,6 +46,18 @@ Sort = Literal[
     "-name",
     "duration",
     "-duration",
+    "frame_rate",
+    "-frame_rate",
+    "joints",
+    "-joints",
+    "travel",
+    "-travel",
+    "speed",
+    "-speed",
+    "energy",
+    "-energy",
+    "tempo",
+    "-tempo",
     "person",
     "-person",
     "task",
@@ -128,6 +144,10 @@ class Clip(Outgoing):
         " no body, or the animation begins later; negative if the animation begins before 0 s."
     )
     joints: int | None = Field(description="Number of joints.")
+    travel: float | None = Field(description=TRAVEL)
+    speed: float | None = Field(description=SPEED)
+    energy: float | None = Field(description=ENERGY)
+    tempo: float | None = Field(description=f"{TEMPO} null without beats.")
     roles: dict[str, str] = Field(description="Joint name by joint role.")
     missing_roles: list[str]
     warnings: list[ClipWarning]

@@ -7,7 +7,7 @@ from typing import Any, Self
 from pydantic import ConfigDict, Field, ModelWrapValidatorHandler, PrivateAttr, model_validator
 from pydantic.config import JsonDict
 
-from app.api.schemas.base import AnyOf, Incoming, Seconds
+from app.api.schemas.base import ENERGY, SPEED, TEMPO, TRAVEL, AnyOf, Incoming, Measure, Seconds
 from app.search.index.filters import META_PATTERN, is_metadata_key
 
 _VALUE: JsonDict = {"type": ["string", "number", "boolean"], "maxLength": 300}
@@ -45,6 +45,18 @@ class Filter(Incoming):
     not_folder: AnyOf | None = Field(None, description="Clips of none of these folders.")
     min_duration: Seconds | None = Field(None, description="Seconds.")
     max_duration: Seconds | None = Field(None, description="Seconds.")
+    min_frame_rate: Measure | None = Field(None, description="Frames per second.")
+    max_frame_rate: Measure | None = Field(None, description="Frames per second.")
+    min_joints: Measure | None = Field(None, description="Number of joints.")
+    max_joints: Measure | None = Field(None, description="Number of joints.")
+    min_travel: Measure | None = Field(None, description=TRAVEL)
+    max_travel: Measure | None = Field(None, description=TRAVEL)
+    min_speed: Measure | None = Field(None, description=SPEED)
+    max_speed: Measure | None = Field(None, description=SPEED)
+    min_energy: Measure | None = Field(None, description=ENERGY)
+    max_energy: Measure | None = Field(None, description=ENERGY)
+    min_tempo: Measure | None = Field(None, description=TEMPO)
+    max_tempo: Measure | None = Field(None, description=TEMPO)
 
     @model_validator(mode="wrap")
     @classmethod

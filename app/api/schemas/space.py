@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from app.api.schemas.base import Metadata, Outgoing
+from app.api.schemas.base import ENERGY, SPEED, TEMPO, TRAVEL, Metadata, Outgoing
 from app.api.schemas.filters import Filter
 from app.search.index.filters import parse_filter
 from app.services.find.map import MAX_POINTS, Map, SpaceName
 from app.store.clips.filter import ClipFilter
+from app.store.clips.measures import MEASURES
 
 
 class SpaceQuery(Filter):
@@ -44,6 +45,12 @@ class MapPoint(Outgoing):
     source: str | None
     metadata: Metadata = Field(description="Values of your own, by key.")
     duration: float | None = Field(description="Seconds.")
+    frame_rate: float | None = Field(description="Frames per second.")
+    joints: int | None = Field(description="Number of joints.")
+    travel: float | None = Field(description=TRAVEL)
+    speed: float | None = Field(description=SPEED)
+    energy: float | None = Field(description=ENERGY)
+    tempo: float | None = Field(description=f"{TEMPO} null without beats.")
     point: list[float] = Field(description="2 or 3 coordinates.")
 
 
@@ -85,7 +92,7 @@ class SpaceMap(Outgoing):
                     license=clip.license,
                     source=clip.source,
                     metadata=dict(clip.metadata),
-                    duration=clip.duration,
+                    **{name: getattr(clip, name) for name in MEASURES},
                     point=point,
                 )
                 for clip, point in zip(drawn.clips, points, strict=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from kinedex.calls import alignment as calls_alignment
 from kinedex.calls import clip_views as calls_clip_views
 from kinedex.calls import clips as calls_clips
 from kinedex.calls import evaluations as calls_evaluations
@@ -15,6 +16,7 @@ from kinedex.calls import low_dimensional as calls_low_dimensional
 from kinedex.calls import models as calls_models
 from kinedex.calls import poses as calls_poses
 from kinedex.calls import recognize as calls_recognize
+from kinedex.calls import recordings as calls_recordings
 from kinedex.calls import search as calls_search
 from kinedex.calls import segments as calls_segments
 from kinedex.calls import service as calls_service
@@ -38,12 +40,13 @@ class Clips(Group[SenderType]):
     update = CallMethod(calls_clips.update_clip)
     delete = CallMethod(calls_clips.delete_clip)
     file = CallMethod(calls_clips.get_file)
-    audio = CallMethod(calls_clips.get_audio)
-    delete_audio = CallMethod(calls_clips.delete_audio)
+    audio = CallMethod(calls_recordings.get_audio)
+    delete_audio = CallMethod(calls_recordings.delete_audio)
     motion = CallMethod(calls_clip_views.get_motion)
     motion_array = CallMethod(calls_clip_views.get_motion_array)
     descriptor = CallMethod(calls_clip_views.get_descriptor)
     thumbnail = CallMethod(calls_clip_views.get_thumbnail)
+    alignment = CallMethod(calls_alignment.get_alignment)
     keyposes = CallMethod(calls_keyposes.get_keyposes)
     name_keyposes = CallMethod(calls_keyposes.name_keyposes)
     forget_named_keyposes = CallMethod(calls_keyposes.forget_named_keyposes)
@@ -95,12 +98,14 @@ class Models(Group[SenderType]):
 
 
 class Labels(Group[SenderType]):
-    """Persons, tasks, words, metadata and folders of the library."""
+    """Persons, tasks, words, sources, licenses, metadata and folders of the library."""
 
     persons = ListMethod(calls_labels.list_persons)
     forget_person = CallMethod(calls_labels.forget_person)
     tasks = ListMethod(calls_labels.list_tasks)
     words = ListMethod(calls_labels.list_words)
+    sources = ListMethod(calls_labels.list_sources)
+    licenses = ListMethod(calls_labels.list_licenses)
     metadata = ListMethod(calls_labels.list_metadata)
     folders = ListMethod(calls_labels.list_folders)
     manifest = CallMethod(calls_labels.get_manifest)

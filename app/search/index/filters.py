@@ -2,10 +2,11 @@
 
 The keys of a filter are `person task word license source` (a string, or an array: the clip has one
 of its values), the same keys with the prefix `not_` (the clip has none of the values), and
-`min_duration max_duration` (seconds). `folder` and `not_folder` name folders of the paths of files;
-the folders below them count too. `meta.KEY` and `not_meta.KEY` are values of a key of the metadata,
-`meta.KEY.min` and `meta.KEY.max` numbers, both ends included. A clip must meet all conditions. A
-clip without a label meets all `not_` conditions for this label.
+`min_NAME max_NAME` for each measure, such as `min_duration` (seconds). `folder` and `not_folder`
+name folders of the paths of files; the folders below them count too. `meta.KEY` and `not_meta.KEY`
+are values of a key of the metadata, `meta.KEY.min` and `meta.KEY.max` numbers. Both ends of a range
+are included. A clip must meet all conditions. A clip without a label meets all `not_` conditions
+for this label; a clip without a measure meets no condition on it.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from app.errors import BadField
 from app.kinedex_error import Place
 from app.models.words.language.normalize import normalize_word
 from app.store.clips.filter import ClipFilter, MetadataCondition
+from app.store.clips.measures import MEASURES
 from app.store.clips.metadata_values import as_text, from_cell
 from app.store.clips.record import META
 
@@ -30,7 +32,7 @@ MAX_LABELS = 100
 """Largest number of values of one key in a filter."""
 MAX_LABEL_LENGTH = 300
 """Largest number of characters of a label; no clip has a longer one."""
-DURATION_KEYS = ("min_duration", "max_duration")
+RANGE_KEYS = tuple(f"{end}_{name}" for name in MEASURES for end in ("min", "max"))
 NOT_META = NOT + META
 META_PATTERN = r"^(not_)?meta\."
 """The names of conditions on metadata, as a regular expression."""
@@ -146,9 +148,9 @@ def _number(value: Any) -> float:
 def _read(key: str, value: Any) -> tuple[str, ...] | float | None:
     if key in LABEL_KEYS or key in NOT_KEYS:
         return _labels(key.removeprefix(NOT), value)
-    if key in DURATION_KEYS:
-        return _seconds(value)
-    keys = ", ".join((*LABEL_KEYS, *NOT_KEYS, *DURATION_KEYS, f"{META}KEY"))
+    if key in RANGE_KEYS:
+        return _measure(value)
+    keys = ", ".join((*LABEL_KEYS, *NOT_KEYS, *RANGE_KEYS, f"{META}KEY"))
     raise ValueError(f"is not a key of a filter; the keys are {keys}")
 
 
@@ -167,10 +169,10 @@ def _labels(key: str, value: Any) -> tuple[str, ...]:
     return tuple(as_stored(key, v) for v in values)
 
 
-def _seconds(value: Any) -> float | None:
+def _measure(value: Any) -> float | None:
     if value is None:
         return None
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
     if not is_number or not math.isfinite(value) or value < 0:
-        raise ValueError("must be a number of seconds, zero or more")
+        raise ValueError("must be a number, zero or more")
     return float(value)

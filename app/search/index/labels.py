@@ -19,6 +19,7 @@ from app.search.index.metadata import MetadataColumns
 from app.search.ranking.ranking import IdArray
 from app.store.clips.filter import ClipFilter, is_in_folder
 from app.store.clips.index_feed import IndexedClip
+from app.store.clips.measures import FOUND
 
 NAMED = ("person", "task", "license", "source", "folder")
 
@@ -106,12 +107,14 @@ class LabelView:
     """The labels of n clips at one moment, by the clips' numbers 0..n-1.
 
     ids: (n,) objects; alive: (n,) whether the clip was not removed; durations: (n,) seconds;
-    coded: the columns of codes (n,) by label; labels: maps labels to codes.
+    measures: (n, m) in the order of FOUND, NaN for those that a clip lacks; coded: the columns of
+    codes (n,) by label; labels: maps labels to codes.
     """
 
     ids: IdArray
     alive: BoolArray
     durations: FloatArray
+    measures: FloatArray
     coded: dict[str, IntArray]
     labels: Labels
 
@@ -121,10 +124,10 @@ class LabelView:
         The filter's state and name are ignored: every clip here is ready.
         """
         mask = self.alive.copy()
-        if clip_filter.min_duration is not None:
-            mask &= self.durations >= clip_filter.min_duration
-        if clip_filter.max_duration is not None:
-            mask &= self.durations <= clip_filter.max_duration
+        for name, least, most in clip_filter.ranges():
+            values = self._measured(name)
+            mask &= values >= (-np.inf if least is None else least)
+            mask &= values <= (np.inf if most is None else most)
         for name, codes in self.labels.codes(clip_filter).items():
             mask &= _any_of(self.coded[name], codes)
         for name, codes in self.labels.codes(clip_filter, negated=True).items():
@@ -134,6 +137,10 @@ class LabelView:
         for clip_id in exclude:
             mask[self._numbers_of(clip_id)] = False
         return mask
+
+    def _measured(self, name: str) -> FloatArray:
+        """(n,) a measure of each clip."""
+        return self.durations if name == "duration" else self.measures[:, FOUND.index(name)]
 
     def word_sets(self) -> tuple[IntArray, tuple[frozenset[str], ...]]:
         """(n,) the code of each clip's set of words, and the sets by code."""
@@ -164,6 +171,7 @@ class Labels:
         self._named = {name: Coded() for name in NAMED}
         self._ids = Column(object)
         self._durations = Column(np.float64)
+        self._measures = Column(np.float64, (len(FOUND),))
         self._alive = Column(np.bool_)
 
     def __len__(self) -> int:
@@ -180,6 +188,7 @@ class Labels:
         first = self.used
         self._ids.extend([clip.id for clip in clips])
         self._durations.extend([clip.duration for clip in clips])
+        self._measures.extend([clip.measures for clip in clips])
         self._alive.extend(np.ones(len(clips), dtype=bool))
         self.words.extend(clip.words for clip in clips)
         self.metadata.extend(clip.metadata for clip in clips)
@@ -218,6 +227,7 @@ class Labels:
             duration=float(self._durations.view()[number]),
             words=self.words.at(number),
             metadata=self.metadata.at(number),
+            measures=tuple(self._measures.view()[number].tolist()),
             array=array,
             **named,
         )
@@ -229,6 +239,7 @@ class Labels:
             ids=self._ids.view(),
             alive=self._alive.view(),
             durations=self._durations.view(),
+            measures=self._measures.view(),
             coded=coded | {"word": self.words.column.view()},
             labels=self,
         )

@@ -6,6 +6,8 @@ the job and the imports that wait: a clip is never ready in part.
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 from app.analysis.analyze import ANALYSIS_VERSION, Analysis
 from app.analysis.energy.energy import EnergyMethod
 from app.errors import (
@@ -149,6 +151,7 @@ def facts(analysis: Analysis) -> ClipFacts:
         analysis_version=ANALYSIS_VERSION,
         audio_offset=analysis.audio_offset,
         start_offset=motion.start_offset,
+        **({} if analysis.measures is None else asdict(analysis.measures)),
     )
 
 

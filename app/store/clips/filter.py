@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from sqlalchemy import ColumnElement, Select, String, and_, cast, func, or_, select
 
+from app.store.clips.measures import MEASURES
 from app.store.clips.record import ClipState
 from app.store.database.tables import clip_metadata, clip_words, clips
 
@@ -49,9 +50,9 @@ class ClipFilter:
     true if the clip has none of its values; a clip without the label passes. An empty tuple and
     None are no condition. folder: the clip's file was in the folder or below it; missing: labels
     (`MISSABLE`) of which the clip lacks at least one; has_warnings: whether it has any; q: a part
-    of the name, the path or a text of the metadata, in upper or lower case; min_duration,
-    max_duration: seconds, both ends included. A search knows none of state, missing, has_warnings
-    and q.
+    of the name, the path or a text of the metadata, in upper or lower case; min_NAME, max_NAME: of
+    a measure (`measures.MEASURES`), both ends included. A search knows none of state, missing,
+    has_warnings and q.
     """
 
     person: tuple[str, ...] = ()
@@ -72,12 +73,31 @@ class ClipFilter:
     has_warnings: bool | None = None
     min_duration: float | None = None
     max_duration: float | None = None
+    min_frame_rate: float | None = None
+    max_frame_rate: float | None = None
+    min_joints: float | None = None
+    max_joints: float | None = None
+    min_travel: float | None = None
+    max_travel: float | None = None
+    min_speed: float | None = None
+    max_speed: float | None = None
+    min_energy: float | None = None
+    max_energy: float | None = None
+    min_tempo: float | None = None
+    max_tempo: float | None = None
     q: str | None = None
 
     @property
     def is_empty(self) -> bool:
         """Whether every clip passes."""
         return self == ClipFilter()
+
+    def ranges(self) -> Iterator[tuple[str, float | None, float | None]]:
+        """The measures with a condition, each with the least and the largest value."""
+        for name in MEASURES:
+            least, most = getattr(self, f"min_{name}"), getattr(self, f"max_{name}")
+            if (least, most) != (None, None):
+                yield name, least, most
 
 
 def condition(filter: ClipFilter, clip_id: ColumnElement[str] = clips.c.id) -> ColumnElement[bool]:
@@ -168,10 +188,9 @@ def _carriers(words: tuple[str, ...]) -> Select[tuple[str]]:
     return select(clip_words.c.clip_id).where(clip_words.c.word.in_(words))
 
 
-def _range_terms(filter: ClipFilter) -> list[ColumnElement[bool]]:
-    terms: list[ColumnElement[bool]] = []
-    if filter.min_duration is not None:
-        terms.append(clips.c.duration >= filter.min_duration)
-    if filter.max_duration is not None:
-        terms.append(clips.c.duration <= filter.max_duration)
-    return terms
+def _range_terms(filter: ClipFilter) -> Iterator[ColumnElement[bool]]:
+    for name, least, most in filter.ranges():
+        if least is not None:
+            yield clips.c[name] >= least
+        if most is not None:
+            yield clips.c[name] <= most

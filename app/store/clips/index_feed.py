@@ -8,6 +8,7 @@ array does not have the shape that the index needs.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -16,6 +17,7 @@ from typing import Any
 from numpy.typing import NDArray
 from sqlalchemy import and_, bindparam, func, select
 
+from app.store.clips.measures import FOUND
 from app.store.clips.metadata_values import MetadataValue, from_text
 from app.store.clips.record import ClipState
 from app.store.database.blobs import from_blob
@@ -56,6 +58,7 @@ _CLIPS = (
         clips.c.source,
         clips.c.duration,
         _WORDS,
+        *(clips.c[name] for name in FOUND),
         clips.c.folder,
         _METADATA,
         clip_arrays.c.dtype,
@@ -74,8 +77,15 @@ _CLIPS = (
 )
 
 
+IndexedMeasures = tuple[float, ...]
+"""The measures FOUND of a clip; NaN for one that it lacks."""
+
 IndexedMetadata = tuple[tuple[str, MetadataValue], ...]
 """The keys of a clip's metadata, each with its value."""
+
+
+UNKNOWN: IndexedMeasures = (math.nan,) * len(FOUND)
+"""The measures of a clip that lacks them all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +108,7 @@ class IndexedClip:
     array: NDArray[Any] | None
     folder: str | None = None
     metadata: IndexedMetadata = ()
+    measures: IndexedMeasures = UNKNOWN
 
 
 def changed_since(tx: Tx, since: int, array: str) -> Iterator[list[IndexedClip]]:
@@ -113,7 +124,7 @@ def changed_since(tx: Tx, since: int, array: str) -> Iterator[list[IndexedClip]]
 
 def _indexed(row: Sequence[Any]) -> IndexedClip:
     clip_id, state, *rest, folder, metadata, dtype, shape, data = row
-    person, task, license_, source, duration, words = rest
+    person, task, license_, source, duration, words, *measures = rest
     return IndexedClip(
         clip_id,
         state == ClipState.READY,
@@ -126,6 +137,7 @@ def _indexed(row: Sequence[Any]) -> IndexedClip:
         None if data is None else from_blob(dtype, shape, data),
         folder,
         _metadata_of(metadata or ""),
+        tuple(math.nan if value is None else value for value in measures),
     )
 
 

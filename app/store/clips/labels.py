@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
-from sqlalchemy import ColumnElement, FromClause, case, func, select
+from sqlalchemy import Column, func, select
 
 from app.store.database.engine import Tx
 from app.store.database.paging import Page, Position, read_cursor, write_cursor
@@ -35,28 +35,34 @@ class LabelKind(StrEnum):
     """The action in the clip."""
     WORD = "word"
     """A word that describes the clip."""
+    SOURCE = "source"
+    """Where the clip comes from."""
+    LICENSE = "license"
+    """The license of the clip."""
 
 
-_KINDS: dict[LabelKind, tuple[ColumnElement[Any], FromClause]] = {
-    LabelKind.PERSON: (clips.c.person, clips),
-    LabelKind.TASK: (clips.c.task, clips),
-    LabelKind.WORD: (clip_words.c.word, clip_words.join(clips)),
+_COLUMNS: dict[LabelKind, Column[Any]] = {
+    LabelKind.PERSON: clips.c.person,
+    LabelKind.TASK: clips.c.task,
+    LabelKind.WORD: clip_words.c.word,
+    LabelKind.SOURCE: clips.c.source,
+    LabelKind.LICENSE: clips.c.license,
 }
 
 
 def persons(tx: Tx, source: str) -> tuple[CountBySource, ...]:
     """The persons, sorted by name; the clips of `source` are counted separately."""
-    return _counts(tx, *_KINDS[LabelKind.PERSON], source)
+    return _counts(tx, _COLUMNS[LabelKind.PERSON], source)
 
 
 def tasks(tx: Tx, source: str) -> tuple[CountBySource, ...]:
     """The tasks, as `persons`."""
-    return _counts(tx, *_KINDS[LabelKind.TASK], source)
+    return _counts(tx, _COLUMNS[LabelKind.TASK], source)
 
 
 def words(tx: Tx, source: str) -> tuple[CountBySource, ...]:
     """The words, as `persons`."""
-    return _counts(tx, *_KINDS[LabelKind.WORD], source)
+    return _counts(tx, _COLUMNS[LabelKind.WORD], source)
 
 
 def person_names(tx: Tx) -> frozenset[str]:
@@ -69,9 +75,8 @@ def page(
     tx: Tx, kind: LabelKind, source: str, limit: int, cursor: str | None = None
 ) -> Page[CountBySource]:
     """At most `limit` labels of a kind, sorted by name; raises BadField at "cursor"."""
-    name, carriers = _KINDS[kind]
     after = None if cursor is None else read_cursor(cursor, kind.value, str).value
-    counts = _counts(tx, name, carriers, source, after=after, limit=limit + 1)
+    counts = _counts(tx, _COLUMNS[kind], source, after=after, limit=limit + 1)
     if len(counts) <= limit:
         return Page(counts, None)
     shown = counts[:limit]
@@ -80,24 +85,36 @@ def page(
 
 def total(tx: Tx, kind: LabelKind) -> Total:
     """How many labels of a kind there are."""
-    name, carriers = _KINDS[kind]
-    query = select(name).select_from(carriers).where(name.is_not(None)).distinct()
+    name = _COLUMNS[kind]
+    query = select(name).where(name.is_not(None)).distinct()
     return exact_total(tx, query)
 
 
 def _counts(
     tx: Tx,
-    name: ColumnElement[Any],
-    carriers: FromClause,
+    name: Column[Any],
     source: str,
     *,
     after: Any = None,
     limit: int | None = None,
 ) -> tuple[CountBySource, ...]:
-    of_source = func.sum(case((clips.c.source == source, 1), else_=0))
-    query = select(name, func.count(), of_source).select_from(carriers)
-    query = query.where(name.is_not(None) if after is None else name > after)
-    rows = tx.execute(query.group_by(name).order_by(name).limit(limit))
+    """The counts by label.
+
+    Two queries, because each reads nothing but indexes. To look at the source of every clip takes
+    ten times as long, for words thirty times (100,000 clips, SQLite).
+    """
+    wanted = name.is_not(None) if after is None else name > after
+    every = select(name, func.count()).where(wanted)
+    rows = tx.execute(every.group_by(name).order_by(name).limit(limit)).all()
+    of_source = _of_source(tx, name, source)
     return tuple(
-        CountBySource(label, int(every) - int(some), int(some)) for label, every, some in rows
+        CountBySource(label, int(count) - of_source.get(label, 0), of_source.get(label, 0))
+        for label, count in rows
     )
+
+
+def _of_source(tx: Tx, name: Column[Any], source: str) -> dict[str, int]:
+    """The number of clips of a source by label."""
+    both = clips if name.table is clips else clip_words.join(clips)
+    query = select(name, func.count()).select_from(both).where(clips.c.source == source)
+    return {label: int(count) for label, count in tx.execute(query.group_by(name)) if label}

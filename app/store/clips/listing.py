@@ -11,6 +11,7 @@ from app.errors import BadField
 from app.kinedex_error import Place
 from app.store.clips import repository as clip_repository
 from app.store.clips.filter import ClipFilter, condition, id_sets
+from app.store.clips.measures import MEASURES
 from app.store.clips.record import REANALYSIS_OPEN, ClipRecord, ClipState, Reanalysis
 from app.store.database.engine import Tx
 from app.store.database.paging import Page, Position, Value, after, read_cursor, write_cursor
@@ -33,7 +34,7 @@ class _Sort:
 _SORTS: dict[str, _Sort] = {
     "created_at": _Sort(clips.c.created_at, datetime),
     "name": _Sort(clips.c.name_folded, str),
-    "duration": _Sort(func.coalesce(clips.c.duration, -1.0), float),
+    **{name: _Sort(func.coalesce(clips.c[name], -1.0), float) for name in MEASURES},
     "person": _Sort(func.coalesce(clips.c.person, ""), str),
     "task": _Sort(func.coalesce(clips.c.task, ""), str),
 }

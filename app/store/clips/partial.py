@@ -11,6 +11,7 @@ from typing import Any
 
 from sqlalchemy import select
 
+from app.store.clips.measures import MEASURES
 from app.store.clips.repository import in_batches
 from app.store.database.engine import Tx
 from app.store.database.tables import clips
@@ -18,7 +19,7 @@ from app.store.database.tables import clips
 PLAIN = frozenset(
     {
         *("id", "name", "state", "format", "sha256", "person", "task", "license", "source"),
-        *("frames", "frame_rate", "declared_frame_rate", "duration", "joints", "created_at"),
+        *("frames", "declared_frame_rate", "created_at", *MEASURES),
     }
 )
 """Fields of `ClipRecord` that are columns of the same name and need no conversion."""

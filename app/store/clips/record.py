@@ -140,11 +140,11 @@ class ClipRecord(ClipLabels):
     sha256: of the bytes of the motion file; content_key: unique for each content (sha256, or with
     a skeleton file a hash of both); roles: joint name by role; durations in seconds, rates in Hz;
     error: an RFC 9457 problem; audio_offset: the time of the motion (s) at which the recording
-    begins, as the analysis estimates it; start_offset: seconds from the start of the motion file to
-    the clip's first frame; reanalysis: the state of another analysis of a ready
-    clip, None if there is none; is_changed: whether a client has changed the hints or the
-    recording since the analysis; changed_version: library version of the last change that
-    searches see, 0 if the clip was never ready.
+    begins, as the analysis estimates it; travel, speed, energy, tempo: see `measures.FOUND`;
+    start_offset: seconds from the start of the motion file to the clip's first frame; reanalysis:
+    the state of another analysis of a ready clip, None if there is none; is_changed: whether a
+    client has changed the hints or the recording since the analysis; changed_version: library
+    version of the last change that searches see, 0 if the clip was never ready.
     """
 
     id: str
@@ -158,6 +158,10 @@ class ClipRecord(ClipLabels):
     declared_frame_rate: float | None
     duration: float | None
     joints: int | None
+    travel: float | None
+    speed: float | None
+    energy: float | None
+    tempo: float | None
     roles: dict[str, str]
     missing_roles: tuple[str, ...]
     warnings: tuple[ClipWarning, ...]
@@ -271,6 +275,10 @@ class ClipFacts:
     analysis_version: int
     audio_offset: float | None = None
     start_offset: float = 0.0
+    travel: float | None = None
+    speed: float | None = None
+    energy: float | None = None
+    tempo: float | None = None
 
 
 ClipChanges = Mapping[str, Any]

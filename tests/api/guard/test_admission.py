@@ -22,6 +22,7 @@ HEAVY = {
     "/v1/synthesize",
     "/v1/space",
     "/v1/clips/{clip_id}/motion",
+    "/v1/clips/{clip_id}/alignment",
     "/v1/clips/{clip_id}/export",
     "/v1/clips/{clip_id}/low-dimensional",
     "/v1/clips/{clip_id}/segments",

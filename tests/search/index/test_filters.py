@@ -9,6 +9,7 @@ import pytest
 from app.errors import BadField
 from app.search.index.filters import parse_filter
 from app.store.clips.filter import ClipFilter
+from app.store.clips.measures import MEASURES
 
 
 def test_an_empty_filter_selects_all_clips() -> None:
@@ -37,9 +38,18 @@ def test_durations_are_numbers_of_seconds() -> None:
     assert (read.min_duration, read.max_duration) == (1.0, 2.5)
 
 
+def test_every_measure_has_a_least_and_a_largest_value() -> None:
+    for name in MEASURES:
+        read = parse_filter({f"min_{name}": 1, f"max_{name}": 2.5})
+        assert list(read.ranges()) == [(name, 1.0, 2.5)]
+        assert list(parse_filter({f"max_{name}": 0}).ranges()) == [(name, None, 0.0)]
+
+
 @pytest.mark.parametrize(
     ("given", "location"),
     [
+        ({"min_speed": "fast"}, "filter.min_speed"),
+        ({"min_height": 1}, "filter.min_height"),
         ({"persons": "ada"}, "filter.persons"),
         ({"state": "failed"}, "filter.state"),
         ({"person": 3}, "filter.person"),

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from app.errors import BadField
 from app.store.clips import listing as clip_listing
 from app.store.clips.filter import ClipFilter
+from app.store.clips.measures import MEASURES
 from app.store.clips.record import ClipRecord, ClipState, ClipWarning
 from app.store.store import Store
 from tests.store.conftest import ON_ONE_STORE, AddClip
@@ -36,7 +37,13 @@ def library_of_six(add_clip: AddClip) -> list[ClipRecord]:
             name,
             ready=False
             if duration is None
-            else {"duration": duration, "warnings": WARNINGS if name == "run" else ()},
+            else {
+                "duration": duration,
+                "warnings": WARNINGS if name == "run" else (),
+                "speed": 1.5 - 0.25 * duration,
+                "travel": None if name == "run" else duration,
+                "tempo": 120.0 if name == "run" else None,
+            },
             person=person,
             task=task,
             words=words,
@@ -69,6 +76,11 @@ def names(store: Store, filter: ClipFilter) -> list[str]:
         (ClipFilter(state=(ClipState.QUEUED,)), lambda c: c.duration is None),
         (ClipFilter(min_duration=2.0), lambda c: (c.duration or 0) >= 2),
         (ClipFilter(max_duration=2.0), lambda c: c.duration is not None and c.duration <= 2),
+        (ClipFilter(min_speed=1.0), lambda c: c.speed is not None and c.speed >= 1),
+        (ClipFilter(max_travel=2.0), lambda c: c.travel is not None and c.travel <= 2),
+        (ClipFilter(min_tempo=100, max_tempo=140), lambda c: c.name == "run"),
+        (ClipFilter(min_joints=22, max_joints=22), lambda c: c.joints == 22),
+        (ClipFilter(max_frame_rate=1), lambda c: False),
         (ClipFilter(missing=("task",)), lambda c: c.task is None),
         (ClipFilter(missing=("person", "words")), lambda c: c.person is None or not c.words),
         (ClipFilter(has_warnings=True), lambda c: c.warnings),
@@ -92,10 +104,15 @@ def test_filters(
     assert names(store, filter) == [clip.name for clip in library_of_six if passes(clip)]
 
 
+def measured(name: str) -> Callable[[ClipRecord], object]:
+    """The key by which a list is sorted by a measure: clips without it come first."""
+    return lambda clip: (-1.0 if (value := getattr(clip, name)) is None else value, clip.id)
+
+
 KEYS: dict[str, Callable[[ClipRecord], object]] = {
     "created_at": lambda c: (c.created_at, c.id),
     "name": lambda c: (c.name.casefold(), c.id),
-    "duration": lambda c: (-1.0 if c.duration is None else c.duration, c.id),
+    **{name: measured(name) for name in MEASURES},
     "person": lambda c: (c.person or "", c.id),
     "task": lambda c: (c.task or "", c.id),
 }

@@ -30,6 +30,18 @@ def list_clips(
     not_folder: str | Sequence[str] | None = None,
     min_duration: float | None = None,
     max_duration: float | None = None,
+    min_frame_rate: float | None = None,
+    max_frame_rate: float | None = None,
+    min_joints: float | None = None,
+    max_joints: float | None = None,
+    min_travel: float | None = None,
+    max_travel: float | None = None,
+    min_speed: float | None = None,
+    max_speed: float | None = None,
+    min_energy: float | None = None,
+    max_energy: float | None = None,
+    min_tempo: float | None = None,
+    max_tempo: float | None = None,
     state: ClipState | None = None,
     missing: Sequence[Literal["person", "task", "words"]] | None = None,
     has_warnings: bool | None = None,
@@ -41,6 +53,18 @@ def list_clips(
         "-name",
         "duration",
         "-duration",
+        "frame_rate",
+        "-frame_rate",
+        "joints",
+        "-joints",
+        "travel",
+        "-travel",
+        "speed",
+        "-speed",
+        "energy",
+        "-energy",
+        "tempo",
+        "-tempo",
         "person",
         "-person",
         "task",
@@ -67,6 +91,18 @@ def list_clips(
     not_folder: Clips of none of these folders.
     min_duration: Seconds.
     max_duration: Seconds.
+    min_frame_rate: Frames per second.
+    max_frame_rate: Frames per second.
+    min_joints: Number of joints.
+    max_joints: Number of joints.
+    min_travel: Meters that the hips travel over the floor, forth and back.
+    max_travel: Meters that the hips travel over the floor, forth and back.
+    min_speed: Mean speed of the hips over the floor, meters per second.
+    max_speed: Mean speed of the hips over the floor, meters per second.
+    min_energy: Mean energy: root mean square speed of the joints, body lengths per second.
+    max_energy: Mean energy: root mean square speed of the joints, body lengths per second.
+    min_tempo: Beats per minute.
+    max_tempo: Beats per minute.
     missing: Only clips that lack at least one of these labels.
     has_warnings: true: only clips with warnings; false: only clips without.
     q: Part of the name, of the path, or of a text of the metadata.
@@ -98,6 +134,18 @@ def list_clips(
             not_folder=not_folder,
             min_duration=min_duration,
             max_duration=max_duration,
+            min_frame_rate=min_frame_rate,
+            max_frame_rate=max_frame_rate,
+            min_joints=min_joints,
+            max_joints=max_joints,
+            min_travel=min_travel,
+            max_travel=max_travel,
+            min_speed=min_speed,
+            max_speed=max_speed,
+            min_energy=min_energy,
+            max_energy=max_energy,
+            min_tempo=min_tempo,
+            max_tempo=max_tempo,
             state=state,
             missing=missing,
             has_warnings=has_warnings,
@@ -281,27 +329,4 @@ def get_file(clip_id: str) -> Call[bytes]:
         path_of("/v1/clips/{clip_id}/file", clip_id=clip_id),
         read_bytes,
         accept="*/*",
-    )
-
-
-def get_audio(clip_id: str) -> Call[bytes]:
-    """The recording that goes with a clip, as an attachment."""
-    return Call(
-        "get_audio",
-        "GET",
-        path_of("/v1/clips/{clip_id}/audio", clip_id=clip_id),
-        read_bytes,
-        accept="*/*",
-    )
-
-
-def delete_audio(clip_id: str) -> Call[Clip]:
-    """Delete the recording that goes with a clip. The clip is analyzed again."""
-    from kinedex.types.clips import Clip
-
-    return Call(
-        "delete_audio",
-        "DELETE",
-        path_of("/v1/clips/{clip_id}/audio", clip_id=clip_id),
-        record(Clip),
     )

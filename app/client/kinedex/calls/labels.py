@@ -79,6 +79,40 @@ def list_words(
     )
 
 
+def list_sources(*, limit: int | None = None, cursor: str | None = None) -> Call[NamedCounts]:
+    """Sources of clips, with the number of clips from each.
+
+    limit: Maximum number of items in all; None lists all.
+    cursor: Where the list starts: `next` of an earlier page.
+    """
+    from kinedex.types.labels import NamedCounts
+
+    return Call(
+        "list_sources",
+        "GET",
+        "/v1/sources",
+        record(NamedCounts),
+        query=given(limit=limit, cursor=cursor),
+    )
+
+
+def list_licenses(*, limit: int | None = None, cursor: str | None = None) -> Call[NamedCounts]:
+    """Licenses, with the number of clips of each.
+
+    limit: Maximum number of items in all; None lists all.
+    cursor: Where the list starts: `next` of an earlier page.
+    """
+    from kinedex.types.labels import NamedCounts
+
+    return Call(
+        "list_licenses",
+        "GET",
+        "/v1/licenses",
+        record(NamedCounts),
+        query=given(limit=limit, cursor=cursor),
+    )
+
+
 def list_metadata(*, limit: int | None = None, cursor: str | None = None) -> Call[MetadataKeys]:
     """The keys of the metadata of clips, with the kinds and the most frequent values of each.
 
@@ -134,6 +168,18 @@ def get_manifest(
     not_folder: str | Sequence[str] | None = None,
     min_duration: float | None = None,
     max_duration: float | None = None,
+    min_frame_rate: float | None = None,
+    max_frame_rate: float | None = None,
+    min_joints: float | None = None,
+    max_joints: float | None = None,
+    min_travel: float | None = None,
+    max_travel: float | None = None,
+    min_speed: float | None = None,
+    max_speed: float | None = None,
+    min_energy: float | None = None,
+    max_energy: float | None = None,
+    min_tempo: float | None = None,
+    max_tempo: float | None = None,
     filter: Filter | Mapping[str, Any] | None = None,
 ) -> Call[bytes]:
     """The labels, hints and metadata of clips, as a manifest that an import reads again.
@@ -147,6 +193,18 @@ def get_manifest(
     not_folder: Clips of none of these folders.
     min_duration: Seconds.
     max_duration: Seconds.
+    min_frame_rate: Frames per second.
+    max_frame_rate: Frames per second.
+    min_joints: Number of joints.
+    max_joints: Number of joints.
+    min_travel: Meters that the hips travel over the floor, forth and back.
+    max_travel: Meters that the hips travel over the floor, forth and back.
+    min_speed: Mean speed of the hips over the floor, meters per second.
+    max_speed: Mean speed of the hips over the floor, meters per second.
+    min_energy: Mean energy: root mean square speed of the joints, body lengths per second.
+    max_energy: Mean energy: root mean square speed of the joints, body lengths per second.
+    min_tempo: Beats per minute.
+    max_tempo: Beats per minute.
     filter: Filters by name, as in a search, for those that are no arguments: {"meta.condition":
         "tired", "meta.age.min": 30}.
     """
@@ -170,6 +228,18 @@ def get_manifest(
             not_folder=not_folder,
             min_duration=min_duration,
             max_duration=max_duration,
+            min_frame_rate=min_frame_rate,
+            max_frame_rate=max_frame_rate,
+            min_joints=min_joints,
+            max_joints=max_joints,
+            min_travel=min_travel,
+            max_travel=max_travel,
+            min_speed=min_speed,
+            max_speed=max_speed,
+            min_energy=min_energy,
+            max_energy=max_energy,
+            min_tempo=min_tempo,
+            max_tempo=max_tempo,
         )
         | given(**(filter or {})),
         accept="*/*",

@@ -29,6 +29,18 @@ def get_space(
     not_folder: str | Sequence[str] | None = None,
     min_duration: float | None = None,
     max_duration: float | None = None,
+    min_frame_rate: float | None = None,
+    max_frame_rate: float | None = None,
+    min_joints: float | None = None,
+    max_joints: float | None = None,
+    min_travel: float | None = None,
+    max_travel: float | None = None,
+    min_speed: float | None = None,
+    max_speed: float | None = None,
+    min_energy: float | None = None,
+    max_energy: float | None = None,
+    min_tempo: float | None = None,
+    max_tempo: float | None = None,
     space: Literal["symbols", "vectors"] | None = None,
     dimensions: int | None = None,
     limit: int | None = None,
@@ -45,6 +57,18 @@ def get_space(
     not_folder: Clips of none of these folders.
     min_duration: Seconds.
     max_duration: Seconds.
+    min_frame_rate: Frames per second.
+    max_frame_rate: Frames per second.
+    min_joints: Number of joints.
+    max_joints: Number of joints.
+    min_travel: Meters that the hips travel over the floor, forth and back.
+    max_travel: Meters that the hips travel over the floor, forth and back.
+    min_speed: Mean speed of the hips over the floor, meters per second.
+    max_speed: Mean speed of the hips over the floor, meters per second.
+    min_energy: Mean energy: root mean square speed of the joints, body lengths per second.
+    max_energy: Mean energy: root mean square speed of the joints, body lengths per second.
+    min_tempo: Beats per minute.
+    max_tempo: Beats per minute.
     space: symbols: the motion symbol space (fitted). vectors: the motion vectors. Default:
         symbols.
     dimensions: Default: 2.
@@ -74,6 +98,18 @@ def get_space(
             not_folder=not_folder,
             min_duration=min_duration,
             max_duration=max_duration,
+            min_frame_rate=min_frame_rate,
+            max_frame_rate=max_frame_rate,
+            min_joints=min_joints,
+            max_joints=max_joints,
+            min_travel=min_travel,
+            max_travel=max_travel,
+            min_speed=min_speed,
+            max_speed=max_speed,
+            min_energy=min_energy,
+            max_energy=max_energy,
+            min_tempo=min_tempo,
+            max_tempo=max_tempo,
             space=space,
             dimensions=dimensions,
             limit=limit,

@@ -21,6 +21,18 @@ class Filter(TypedDict):
     not_folder: Clips of none of these folders.
     min_duration: Seconds.
     max_duration: Seconds.
+    min_frame_rate: Frames per second.
+    max_frame_rate: Frames per second.
+    min_joints: Number of joints.
+    max_joints: Number of joints.
+    min_travel: Meters that the hips travel over the floor, forth and back.
+    max_travel: Meters that the hips travel over the floor, forth and back.
+    min_speed: Mean speed of the hips over the floor, meters per second.
+    max_speed: Mean speed of the hips over the floor, meters per second.
+    min_energy: Mean energy: root mean square speed of the joints, body lengths per second.
+    max_energy: Mean energy: root mean square speed of the joints, body lengths per second.
+    min_tempo: Beats per minute.
+    max_tempo: Beats per minute.
     """
 
     person: NotRequired[str | Sequence[str] | None]
@@ -37,6 +49,18 @@ class Filter(TypedDict):
     not_folder: NotRequired[str | Sequence[str] | None]
     min_duration: NotRequired[float | None]
     max_duration: NotRequired[float | None]
+    min_frame_rate: NotRequired[float | None]
+    max_frame_rate: NotRequired[float | None]
+    min_joints: NotRequired[float | None]
+    max_joints: NotRequired[float | None]
+    min_travel: NotRequired[float | None]
+    max_travel: NotRequired[float | None]
+    min_speed: NotRequired[float | None]
+    max_speed: NotRequired[float | None]
+    min_energy: NotRequired[float | None]
+    max_energy: NotRequired[float | None]
+    min_tempo: NotRequired[float | None]
+    max_tempo: NotRequired[float | None]
 
 
 class SearchExample(TypedDict):

@@ -25,6 +25,10 @@ class Clip(Record):
     time of the clip to find it in your own program. It is 0 unless frames at the start have no
     body, or the animation begins later; negative if the animation begins before 0 s.
     joints: Number of joints.
+    travel: Meters that the hips travel over the floor, forth and back.
+    speed: Mean speed of the hips over the floor, meters per second.
+    energy: Mean energy: root mean square speed of the joints, body lengths per second.
+    tempo: Beats per minute. null without beats.
     roles: Joint name by joint role.
     has_audio: Whether the clip has a recording: GET .../audio.
     audio_offset: Time in the motion at which the recording begins, seconds, as given or
@@ -54,6 +58,10 @@ class Clip(Record):
     duration: float | None
     start_offset: float | None
     joints: int | None
+    travel: float | None
+    speed: float | None
+    energy: float | None
+    tempo: float | None
     roles: dict[str, str]
     missing_roles: list[str]
     warnings: list[ClipWarning]

@@ -14,6 +14,12 @@ class MapPoint(Record):
     path: Path of the file, relative to its import.
     metadata: Values of your own, by key.
     duration: Seconds.
+    frame_rate: Frames per second.
+    joints: Number of joints.
+    travel: Meters that the hips travel over the floor, forth and back.
+    speed: Mean speed of the hips over the floor, meters per second.
+    energy: Mean energy: root mean square speed of the joints, body lengths per second.
+    tempo: Beats per minute. null without beats.
     point: 2 or 3 coordinates.
     """
 
@@ -27,6 +33,12 @@ class MapPoint(Record):
     source: str | None
     metadata: dict[str, bool | int | float | str]
     duration: float | None
+    frame_rate: float | None
+    joints: int | None
+    travel: float | None
+    speed: float | None
+    energy: float | None
+    tempo: float | None
     point: list[float]
 
 

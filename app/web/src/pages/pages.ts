@@ -58,6 +58,7 @@ export const PAGES: readonly PageEntry[] = [
 /** Pages that the navigation does not list. */
 export const OTHER_PAGES: readonly Pick<PageEntry, "name" | "load">[] = [
   { name: "clips", load: () => import("./clip/ClipPage.svelte") },
+  { name: "compare", load: () => import("./compare/ComparePage.svelte") },
   { name: "study", load: () => import("./study/Study.svelte") },
 ];
 

@@ -65,10 +65,11 @@ class Figure {
     }
   }
 
-  color(colors: BodyColors): void {
+  /** tint: a color of each joint, 0xrrggbb, instead of that of its side. */
+  color(colors: BodyColors, tint?: readonly number[] | null): void {
     const color = new Color();
     this.rig.motion.names.forEach((name, joint) => {
-      color.set(colors[sideOf(name)]);
+      color.set(tint?.[joint] ?? colors[sideOf(name)]);
       this.#bones.setColorAt(joint, color);
       this.#joints.setColorAt(joint, color);
     });
@@ -126,6 +127,7 @@ export class Body {
   #ghosts: readonly Figure[] = [];
   #trails: readonly { joint: number; line: Line }[] = [];
   #colors: BodyColors;
+  #isTinted = false;
 
   constructor(
     readonly source: BodySource,
@@ -147,7 +149,9 @@ export class Body {
     this.#clearTrails();
   }
 
-  show(seconds: number, options: BodyOptions): void {
+  show(seconds: number, options: BodyOptions, tint: readonly number[] | null = null): void {
+    if (tint || this.#isTinted) this.#figure.color(this.#colors, tint);
+    this.#isTinted = tint !== null;
     this.pose = this.#figure.show(seconds, options);
     this.#showGhosts(seconds, options);
     this.#showTrails(seconds, options);

@@ -11,6 +11,8 @@ export interface PlayerClip {
   load(signal: AbortSignal): Promise<SkeletonMotion>;
   /** The clip's own time at a time of the player; by default the same. */
   at?(seconds: number): number;
+  /** A color of each joint, 0xrrggbb, at a time of the player; null: those of its sides. */
+  tint?(seconds: number): readonly number[] | null;
   readonly audio?: { readonly clipId: string; readonly begins: number };
 }
 

@@ -24,6 +24,8 @@ export interface StageColors {
 export interface Shown extends BodyOptions {
   /** Seconds of each body. */
   readonly times: readonly number[];
+  /** Of each body the colors of its joints, 0xrrggbb; without, those of its sides. */
+  readonly tints?: readonly (readonly number[] | null)[];
   readonly follow: boolean;
 }
 
@@ -60,6 +62,7 @@ export class Stage {
   readonly #floor = new Floor();
   #bodies: readonly Body[] = [];
   #colors: StageColors;
+  #apart = APART;
   #request = 0;
 
   /** Throws without WebGL. */
@@ -102,7 +105,7 @@ export class Stage {
   /** The camera at first: all bodies are seen, side by side. */
   get home(): Camera {
     const wide = 2 * Math.tan(MathUtils.degToRad(FIELD_DEGREES / 2)) * this.#camera.aspect;
-    const needed = (APART * (this.#bodies.length - 1) + ROOM) / wide;
+    const needed = (this.#apart * (this.#bodies.length - 1) + ROOM) / wide;
     return { ...HOME, distance: Math.max(HOME.distance, needed) };
   }
 
@@ -114,7 +117,9 @@ export class Stage {
     this.draw();
   }
 
-  setBodies(sources: readonly BodySource[]): void {
+  /** apart: meters between the bodies. */
+  setBodies(sources: readonly BodySource[], apart = APART): void {
+    this.#apart = apart;
     for (const body of this.#bodies) {
       body.group.removeFromParent();
       body.dispose();
@@ -122,7 +127,7 @@ export class Stage {
     this.#bodies = sources.map((source, place) => new Body(source, this.#colorsOf(place)));
     const angle = MathUtils.degToRad(HOME.azimuth);
     this.#bodies.forEach(({ group }, place) => {
-      const beside = APART * (place - (this.#bodies.length - 1) / 2);
+      const beside = apart * (place - (this.#bodies.length - 1) / 2);
       group.position.x += beside * Math.cos(angle);
       group.position.z -= beside * Math.sin(angle);
       this.#scene.add(group);
@@ -130,8 +135,8 @@ export class Stage {
     this.#controls.target.set(0, HIP_HEIGHT, 0);
   }
 
-  show({ times, follow, ...options }: Shown): void {
-    this.#bodies.forEach((body, place) => body.show(times[place] ?? 0, options));
+  show({ times, tints, follow, ...options }: Shown): void {
+    this.#bodies.forEach((body, place) => body.show(times[place] ?? 0, options, tints?.[place]));
     if (follow) this.#follow();
     this.draw();
   }

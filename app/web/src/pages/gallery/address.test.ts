@@ -16,6 +16,19 @@ it("asks for what the address says", () => {
   expect(isFiltered(values)).toBe(true);
 });
 
+it("asks for measures", () => {
+  const values = read("min=1&speed_min=0.5&speed_max=2&tempo_max=120&joints_min=x&sort=-speed");
+  expect(clipQuery(values)).toEqual({
+    sort: "-speed",
+    min_duration: 1,
+    min_speed: 0.5,
+    max_speed: 2,
+    max_tempo: 120,
+  });
+  const cleared = writeQuery(GALLERY, new URLSearchParams("speed_min=1&max=2"), UNFILTERED);
+  expect(cleared.toString()).toBe("");
+});
+
 it("asks for all clips by itself, and after clearing", () => {
   expect(clipQuery(read(""))).toEqual({ sort: "-created_at" });
   const cleared = writeQuery(GALLERY, new URLSearchParams("word=a&max=3&size=s"), UNFILTERED);

@@ -1,5 +1,6 @@
 /** The gallery's state in its address, and what it asks the API for. */
-import { choice, flag, list, number, text, type Values } from "$/core/query";
+import { choice, flag, list, number, text, type Field, type Values } from "$/core/query";
+import { MEASURE_NAMES, type Measure } from "$/motion/measures";
 import type { operations } from "$/api/schema";
 
 export const SORTS = {
@@ -11,6 +12,14 @@ export const SORTS = {
   task: "Task",
   "-duration": "Longest first",
   duration: "Shortest first",
+  "-speed": "Fastest first",
+  speed: "Slowest first",
+  "-travel": "Farthest first",
+  "-energy": "Most energy first",
+  energy: "Least energy first",
+  "-tempo": "Highest tempo first",
+  "-frame_rate": "Highest frame rate first",
+  "-joints": "Most joints first",
 } as const;
 export type Sort = keyof typeof SORTS;
 
@@ -25,7 +34,20 @@ export const LACKS = ["person", "task", "words"] as const;
 /** The key of the metadata that names a clip's collection. */
 export const COLLECTION = "collection";
 
-const MAX_SECONDS = 1e6;
+const MAX = 1e6;
+
+type Other = Exclude<Measure, "duration">;
+type BoundName = "min" | "max" | `${Other}_${"min" | "max"}`;
+
+/** The fields of the least and the largest value of a measure. */
+export function boundsOf(measure: Measure): readonly [BoundName, BoundName] {
+  return measure === "duration" ? ["min", "max"] : [`${measure}_min`, `${measure}_max`];
+}
+
+const BOUND_NAMES = MEASURE_NAMES.flatMap(boundsOf);
+const BOUNDS = Object.fromEntries(
+  BOUND_NAMES.map((name) => [name, number(null, 0, MAX)]),
+) as Record<BoundName, Field<number | null>>;
 
 export const GALLERY = {
   q: text(),
@@ -41,8 +63,7 @@ export const GALLERY = {
   lacks: choice(["nothing", ...LACKS], "nothing"),
   /** Only clips with warnings. */
   doubts: flag(),
-  min: number(null, 0, MAX_SECONDS),
-  max: number(null, 0, MAX_SECONDS),
+  ...BOUNDS,
   sort: choice(Object.keys(SORTS) as Sort[], "-created_at"),
   size: choice(Object.keys(SIZES) as Size[], "m"),
   /** Ids of the chosen clips, as far as an address may hold them. */
@@ -66,8 +87,17 @@ export function clipQuery(values: GalleryValues): ClipQuery {
   if (values.state !== "any") query.state = values.state;
   if (values.lacks !== "nothing") query.missing = [values.lacks];
   if (values.doubts) query.has_warnings = true;
-  if (values.min !== null) query.min_duration = values.min;
-  if (values.max !== null) query.max_duration = values.max;
+  Object.assign(query, measuresQuery(values));
+  return query;
+}
+
+function measuresQuery(values: GalleryValues): Record<string, number> {
+  const query: Record<string, number> = {};
+  for (const measure of MEASURE_NAMES) {
+    const [least, most] = boundsOf(measure).map((name) => values[name]);
+    if (typeof least === "number") query[`min_${measure}`] = least;
+    if (typeof most === "number") query[`max_${measure}`] = most;
+  }
   return query;
 }
 
@@ -96,8 +126,7 @@ export const UNFILTERED: Partial<GalleryValues> = {
   state: "any",
   lacks: "nothing",
   doubts: false,
-  min: null,
-  max: null,
+  ...Object.fromEntries(BOUND_NAMES.map((name) => [name, null])),
 };
 
 export function isFiltered(values: GalleryValues): boolean {

@@ -11,6 +11,9 @@ const MAX_PAGE = 1000;
 export class Feed {
   clips: readonly Clip[] = $state.raw([]);
   isWhole = $state(false);
+  /** How many clips the query has, also those that are not loaded; null until it is known. */
+  total: number | null = $state(null);
+  isExact = $state(true);
   failure: unknown = $state.raw();
   readonly #query: ClipQuery;
   #cursor: string | null = null;
@@ -43,7 +46,9 @@ export class Feed {
   }
 
   remove(ids: ReadonlySet<string>): void {
+    const before = this.clips.length;
     this.clips = this.clips.filter((clip) => !ids.has(clip.id));
+    if (this.total !== null) this.total -= before - this.clips.length;
   }
 
   async #load(limit: number): Promise<void> {
@@ -53,6 +58,7 @@ export class Feed {
       this.#loading = null; // before the clips show: the grid may ask for more at once
       this.clips = [...this.clips, ...page.items];
       this.#cursor = page.next;
+      [this.total, this.isExact] = [page.total, page.total_is_exact];
       this.isWhole = page.next === null;
       this.failure = undefined;
     } catch (failure) {

@@ -1,5 +1,6 @@
 /** Which color each clip of the map gets from a label, a measure or its metadata. */
 import type { Schemas } from "$/api/client";
+import { MEASURE_NAMES, titleOf } from "$/motion/measures";
 
 export type MapClip = Schemas["MapPoint"];
 type Value = string | number | boolean | null;
@@ -11,7 +12,6 @@ export const LABELS = {
   source: "Source",
   license: "License",
 } as const;
-export const MEASURES = { duration: "Duration, seconds" } as const;
 const META = "meta.";
 
 /** Colors that are told apart; the rarer values share one. */
@@ -40,7 +40,8 @@ export interface Range {
 export function choices(clips: readonly MapClip[]): readonly (readonly [string, string])[] {
   const keys = new Set(clips.flatMap(({ metadata }) => Object.keys(metadata)));
   const own = [...keys].sort().map((key) => [META + key, key] as const);
-  return [...Object.entries({ ...LABELS, ...MEASURES }), ...own];
+  const measures = MEASURE_NAMES.map((name) => [name, titleOf(name)] as const);
+  return [...Object.entries(LABELS), ...measures, ...own];
 }
 
 export function coloring(clips: readonly MapClip[], by: string): Classes | Range {
@@ -53,7 +54,8 @@ export function coloring(clips: readonly MapClip[], by: string): Classes | Range
 function valueOf(clip: MapClip, by: string): Value {
   if (by.startsWith(META)) return clip.metadata[by.slice(META.length)] ?? null;
   if (by === "person" || by === "task" || by === "source" || by === "license") return clip[by];
-  return by === "duration" ? clip.duration : null;
+  const measure = MEASURE_NAMES.find((name) => name === by);
+  return measure ? clip[measure] : null;
 }
 
 /** Of each clip's words the one that most clips carry. */

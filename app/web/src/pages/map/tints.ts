@@ -1,9 +1,9 @@
 /** The colors of the points, in the tokens of the theme. */
+import { between, rgb, type Rgb } from "$/core/color";
 import { tokenColor } from "$/core/token";
 import { MAX_CLASSES, NONE, OTHER, type Classes, type Range } from "./colors";
 import type { Tints } from "./plot";
 
-type Rgb = readonly [number, number, number];
 const OPAQUE = 235;
 /** Of points without a value: they stand back. */
 const FAINT = 110;
@@ -29,18 +29,4 @@ export function tintsOf(colors: Classes | Range, element: Element): Tints {
     });
   }
   return tints;
-}
-
-export function rgb(color: string): Rgb {
-  const [red = 0, green = 0, blue = 0] = (color.match(/[\d.]+/g) ?? []).map(Number);
-  return [red, green, blue];
-}
-
-/** The color at a share, 0 to 1, of the way through others. */
-export function between(colors: readonly Rgb[], share: number): Rgb {
-  const at = share * (colors.length - 1);
-  const before = Math.min(Math.floor(at), colors.length - 2);
-  const [from, to] = [colors[before] ?? [0, 0, 0], colors[before + 1] ?? [0, 0, 0]];
-  const mixed = (axis: 0 | 1 | 2): number => from[axis] + (at - before) * (to[axis] - from[axis]);
-  return [mixed(0), mixed(1), mixed(2)];
 }

@@ -1,0 +1,1 @@
+"""Two clips of the library, compared moment by moment."""
