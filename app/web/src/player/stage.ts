@@ -5,6 +5,7 @@ import {
   HemisphereLight,
   MathUtils,
   PerspectiveCamera,
+  Quaternion,
   Scene,
   Spherical,
   Vector3,
@@ -25,6 +26,8 @@ export interface Shown extends BodyOptions {
   /** Seconds of each body. */
   readonly times: readonly number[];
   readonly follow: boolean;
+  /** The first person's own view. */
+  readonly eyes: boolean;
 }
 
 /** A point of a body, in pixels of the canvas. */
@@ -45,6 +48,11 @@ export interface StageEvents {
 const MAX_PIXEL_RATIO = 1.5;
 const HIP_HEIGHT = 0.9;
 const FIELD_DEGREES = 40;
+/** The field of the first person's view: eyes see more than a camera that shows a body. */
+const EYES_DEGREES = 75;
+/** Where a point behind the camera is said to be: outside of every canvas. */
+const UNSEEN = -1e4;
+const BACKWARD = new Quaternion().setFromAxisAngle(new Vector3(0, 1, 0), Math.PI);
 /** Meters between bodies side by side, and beside the outer ones. */
 const APART = 1.4;
 const ROOM = 1.5;
@@ -55,12 +63,14 @@ export class Stage {
   readonly #renderer: WebGLRenderer;
   readonly #scene = new Scene();
   readonly #camera = new PerspectiveCamera(FIELD_DEGREES, 1, 0.05, 100);
+  readonly #eyes = new PerspectiveCamera(EYES_DEGREES, 1, 0.02, 100);
   readonly #controls: OrbitControls;
   readonly #told: StageEvents;
   readonly #floor = new Floor();
   #bodies: readonly Body[] = [];
   #colors: StageColors;
   #request = 0;
+  #isFirstPerson = false;
 
   /** Throws without WebGL. */
   constructor(canvas: HTMLCanvasElement, colors: StageColors, told: StageEvents) {
@@ -130,17 +140,21 @@ export class Stage {
     this.#controls.target.set(0, HIP_HEIGHT, 0);
   }
 
-  show({ times, follow, ...options }: Shown): void {
+  show({ times, follow, eyes, ...options }: Shown): void {
     this.#bodies.forEach((body, place) => body.show(times[place] ?? 0, options));
     if (follow) this.#follow();
+    this.#isFirstPerson = eyes && this.#look();
+    this.#controls.enabled = !this.#isFirstPerson;
     this.draw();
   }
 
   resize(width: number, height: number): void {
     if (width === 0 || height === 0) return;
     this.#renderer.setSize(width, height, false);
-    this.#camera.aspect = width / height;
-    this.#camera.updateProjectionMatrix();
+    for (const camera of [this.#camera, this.#eyes]) {
+      camera.aspect = width / height;
+      camera.updateProjectionMatrix();
+    }
     this.draw();
   }
 
@@ -162,7 +176,8 @@ export class Stage {
     const point = new Vector3();
     const { group, pose } = this.#bodies[body] ?? {};
     if (group && pose) group.localToWorld(point.fromArray(pose, joint * 3));
-    point.setY(point.y + above).project(this.#camera);
+    point.setY(point.y + above).project(this.#seeing);
+    if (point.z > 1) return { name, x: UNSEEN, y: UNSEEN };
     return { name, x: ((point.x + 1) / 2) * width, y: ((1 - point.y) / 2) * height };
   }
 
@@ -170,7 +185,7 @@ export class Stage {
   draw(): void {
     this.#request ||= requestAnimationFrame(() => {
       this.#request = 0;
-      this.#renderer.render(this.#scene, this.#camera);
+      this.#renderer.render(this.#scene, this.#seeing);
       this.#told.ondraw();
     });
   }
@@ -188,6 +203,21 @@ export class Stage {
     const colors = bodies[place % bodies.length];
     if (!colors) throw new Error("A stage needs colors for its bodies.");
     return colors;
+  }
+
+  get #seeing(): PerspectiveCamera {
+    return this.#isFirstPerson ? this.#eyes : this.#camera;
+  }
+
+  /** Look out of the first body's eyes; whether they are known. */
+  #look(): boolean {
+    const body = this.#bodies[0];
+    const eyes = body?.eyes;
+    if (!body || !eyes) return false;
+    this.#eyes.position.copy(eyes.place).add(body.group.position);
+    // A camera looks along -z.
+    this.#eyes.quaternion.copy(eyes.turn).multiply(BACKWARD);
+    return true;
   }
 
   /** Go with the middle of the bodies over the floor. */

@@ -2,7 +2,7 @@
  * How the player shows what it plays: fields for the address of any page that has a player.
  * `new Address({ ...PLAYER, other: text() })`
  */
-import { flag, number, text, type Values } from "$/core/query";
+import { choice, flag, number, text, type Values } from "$/core/query";
 
 const MAX_SECONDS = 1e6;
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2] as const;
@@ -15,12 +15,18 @@ export const PLAYER = {
   /** The range that is played, seconds; null: the whole. */
   from: number(null, 0, MAX_SECONDS),
   to: number(null, 0, MAX_SECONDS),
+  /** What is seen of a body: its skin, or its bones. */
+  body: choice(["skin", "bones"], "skin"),
+  /** The view of the first person. */
+  eyes: flag(false),
   follow: flag(true),
   place: flag(false),
   mirror: flag(false),
   ghosts: flag(false),
   trails: flag(false),
   names: flag(false),
+  /** The name of a joint that is marked. */
+  joint: text(),
   /** The camera around its target: azimuth and polar angle in degrees, distance in meters. */
   cam: text(),
 };
