@@ -165,6 +165,10 @@ export class Body {
     this.group.position.set(-x, 0, -z);
   }
 
+  get isPerson(): boolean {
+    return this.#anatomy !== null;
+  }
+
   color(colors: BodyColors): void {
     this.#colors = colors;
     for (const shape of [this.#shape, ...this.#ghosts]) shape.color(colors);

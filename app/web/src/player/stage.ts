@@ -2,6 +2,7 @@
 import {
   Color,
   DirectionalLight,
+  Euler,
   HemisphereLight,
   MathUtils,
   PerspectiveCamera,
@@ -47,12 +48,19 @@ export interface StageEvents {
 /** Software draws each pixel by itself: more of them than this cost frames. */
 const MAX_PIXEL_RATIO = 1.5;
 const HIP_HEIGHT = 0.9;
+/** What the camera turns around at first. */
+const START = new Vector3(0, HIP_HEIGHT, 0);
 const FIELD_DEGREES = 40;
 /** The field of the first person's view: eyes see more than a camera that shows a body. */
-const EYES_DEGREES = 75;
+const EYES_DEGREES = 85;
+/** How far below straight ahead they look: hands are seen then. */
+const DOWN_DEGREES = 18;
 /** Where a point behind the camera is said to be: outside of every canvas. */
 const UNSEEN = -1e4;
-const BACKWARD = new Quaternion().setFromAxisAngle(new Vector3(0, 1, 0), Math.PI);
+/** From the turn of a head, which looks along z, to that of a camera, which looks along -z. */
+const LOOK = new Quaternion().setFromEuler(
+  new Euler(-MathUtils.degToRad(DOWN_DEGREES), Math.PI, 0, "YXZ"),
+);
 /** Meters between bodies side by side, and beside the outer ones. */
 const APART = 1.4;
 const ROOM = 1.5;
@@ -71,6 +79,10 @@ export class Stage {
   #colors: StageColors;
   #request = 0;
   #isFirstPerson = false;
+  /** What the camera turns around, but for a shift. */
+  readonly #base = START.clone();
+  /** Whether it followed the bodies before; null at first. */
+  #isFollowing: boolean | null = null;
 
   /** Throws without WebGL. */
   constructor(canvas: HTMLCanvasElement, colors: StageColors, told: StageEvents) {
@@ -82,7 +94,7 @@ export class Stage {
     sun.position.set(2, 5, 3);
     this.#scene.add(new HemisphereLight(0xffffff, 0xb8b2a6, 2), sun, this.#floor.lines);
     this.#controls = new OrbitControls(this.#camera, canvas);
-    this.#controls.target.set(0, HIP_HEIGHT, 0);
+    this.#controls.target.copy(START);
     this.#controls.minDistance = 0.5;
     this.#controls.maxDistance = 40;
     this.#controls.addEventListener("change", () => this.draw());
@@ -95,15 +107,17 @@ export class Stage {
       this.#camera.position.clone().sub(this.#controls.target),
     );
     const [azimuth, polar] = [MathUtils.radToDeg(theta), MathUtils.radToDeg(phi)];
-    return { azimuth, polar, distance: radius };
+    const [x, y, z] = this.#controls.target.clone().sub(this.#base).toArray();
+    return { azimuth, polar, distance: radius, shift: [x, y, z] };
   }
 
-  set camera({ azimuth, polar, distance }: Camera) {
+  set camera({ azimuth, polar, distance, shift }: Camera) {
     const from = new Vector3().setFromSphericalCoords(
       distance,
       MathUtils.degToRad(polar),
       MathUtils.degToRad(azimuth),
     );
+    this.#controls.target.copy(this.#base).add(new Vector3(...shift));
     this.#camera.position.copy(this.#controls.target).add(from);
     this.#controls.update();
     this.draw();
@@ -137,12 +151,19 @@ export class Stage {
       group.position.z -= beside * Math.sin(angle);
       this.#scene.add(group);
     });
-    this.#controls.target.set(0, HIP_HEIGHT, 0);
+    this.#base.copy(START);
+    this.#controls.target.copy(START);
+    this.#isFollowing = null;
+  }
+
+  /** Whether a skeleton is known to be that of a person, which can have a skin. */
+  get hasPerson(): boolean {
+    return this.#bodies.some((body) => body.isPerson);
   }
 
   show({ times, follow, eyes, ...options }: Shown): void {
     this.#bodies.forEach((body, place) => body.show(times[place] ?? 0, options));
-    if (follow) this.#follow();
+    this.#follow(follow);
     this.#isFirstPerson = eyes && this.#look();
     this.#controls.enabled = !this.#isFirstPerson;
     this.draw();
@@ -209,28 +230,39 @@ export class Stage {
     return this.#isFirstPerson ? this.#eyes : this.#camera;
   }
 
-  /** Look out of the first body's eyes; whether they are known. */
+  /** Look out of the eyes of the first person; whether there is one. */
   #look(): boolean {
-    const body = this.#bodies[0];
+    const body = this.#bodies.find(({ isPerson }) => isPerson);
     const eyes = body?.eyes;
     if (!body || !eyes) return false;
     this.#eyes.position.copy(eyes.place).add(body.group.position);
-    // A camera looks along -z.
-    this.#eyes.quaternion.copy(eyes.turn).multiply(BACKWARD);
+    this.#eyes.quaternion.copy(eyes.turn).multiply(LOOK);
     return true;
   }
 
-  /** Go with the middle of the bodies over the floor. */
-  #follow(): void {
+  /** Go with the middle of the bodies over the floor, or stay. */
+  #follow(follows: boolean): void {
+    const { target } = this.#controls;
+    const stood = this.#isFollowing === false ? target.clone().setY(HIP_HEIGHT) : this.#base;
+    const next = follows ? this.#middle() : START;
+    if (follows) {
+      const gone = next.clone().sub(stood);
+      target.add(gone);
+      this.#camera.position.add(gone);
+      this.#controls.update();
+    }
+    this.#base.copy(next);
+    const hasStopped = this.#isFollowing === true && !follows;
+    this.#isFollowing = follows;
+    if (hasStopped) this.#told.onmove(this.camera);
+  }
+
+  #middle(): Vector3 {
     const middle = new Vector3();
     const hips = new Vector3();
-    for (const body of this.#bodies) {
-      middle.add(hips.fromArray(body.pose, body.source.rig.root * 3).add(body.group.position));
+    for (const { pose, source, group } of this.#bodies) {
+      middle.add(hips.fromArray(pose, source.rig.root * 3).add(group.position));
     }
-    middle.divideScalar(Math.max(1, this.#bodies.length)).setY(this.#controls.target.y);
-    const gone = middle.sub(this.#controls.target);
-    this.#controls.target.add(gone);
-    this.#camera.position.add(gone);
-    this.#controls.update();
+    return middle.divideScalar(Math.max(1, this.#bodies.length)).setY(HIP_HEIGHT);
   }
 }
