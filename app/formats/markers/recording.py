@@ -64,6 +64,7 @@ def recording_of_markers(tracks: Tracks, format: str) -> Recording:
     good = np.isfinite(positions[..., 0]).all(axis=0)
     usable = {marker: positions[:, marker] for marker in np.flatnonzero(good).tolist()}
     centers = centers_of(markers, usable)
+    cautions = stretch_caution(markers, stretch) + gap_cautions(markers, stretch, positions)
     skeleton, positions = _skeleton(markers.labels, usable, centers)
     return Recording(
         format=format,
@@ -75,10 +76,7 @@ def recording_of_markers(tracks: Tracks, format: str) -> Recording:
         up_axis=tracks.up_axis,
         metres_per_unit=tracks.metres_per_unit,
         start_frame=markers.skipped + stretch.start,
-        cautions=tracks.cautions
-        + markers.cautions
-        + stretch_caution(markers, stretch)
-        + gap_cautions(markers, filled.frames, np.flatnonzero(~good).tolist()),
+        cautions=tracks.cautions + markers.cautions + cautions,
     )
 
 
