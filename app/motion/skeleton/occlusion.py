@@ -39,12 +39,11 @@ class Gap:
 class Filled:
     """Markers with filled gaps.
 
-    positions: (frames, markers, 3), NaN only in long gaps. frames: how many frames of markers
-    were filled. long_gaps: the gaps that were not filled, by marker and time.
+    positions: (frames, markers, 3), NaN only in long gaps. long_gaps: the gaps that were not
+    filled, by marker and time.
     """
 
     positions: FloatArray
-    frames: int
     long_gaps: tuple[Gap, ...]
 
 
@@ -57,7 +56,6 @@ def fill_gaps(positions: FloatArray, frame_rate: float) -> Filled:
     unseen = hidden(positions)
     filled = positions.copy()
     long_gaps: list[Gap] = []
-    count = 0
     for marker in np.flatnonzero(unseen.any(axis=0)).tolist():
         short = unseen[:, marker].copy()
         for start, end in runs(short):
@@ -66,8 +64,7 @@ def fill_gaps(positions: FloatArray, frame_rate: float) -> Filled:
                 long_gaps.append(Gap(marker, start, end))
         if short.any() and not unseen[:, marker].all():
             filled[short, marker] = _interpolated(positions[:, marker], unseen[:, marker], short)
-            count += int(short.sum())
-    return Filled(filled, count, tuple(long_gaps))
+    return Filled(filled, tuple(long_gaps))
 
 
 def longest_gap(unseen: BoolArray) -> Gap | None:
