@@ -7,19 +7,23 @@ import {
 } from "three";
 import type { SkeletonMotion } from "$/motion/motion";
 import type { Side } from "$/motion/skeleton";
-import { PARTS } from "./frames";
+import { PARTS, type Part } from "./frames";
 import type { Anatomy } from "./anatomy";
 import { restOf, type Rest } from "./rest";
 import { solidsOf, type Solid } from "./solids";
 import { surfaceOf } from "./surface";
 
 /** Shares of the stature: the size of a cell of the surface, and the width of a seam. */
-const CELL = 1 / 110;
+const CELL = 1 / 100;
 const ROUND = 0.018;
 /** Meters for a person of 1 m: a solid so much farther than the nearest moves a point e times less. */
 const REACH = 0.006;
+/** Beyond this many of them it moves nothing. */
+const FAR = 12;
 /** Parts that move one point: what a GPU takes. */
 const MAX_PARTS = 4;
+const NONE = Array.from({ length: MAX_PARTS }, () => [0, 0] as const);
+const NUMBERS = Object.fromEntries(PARTS.map((part, at) => [part, at])) as Record<Part, number>;
 
 export interface BodyMesh {
   readonly rest: Rest;
@@ -57,19 +61,25 @@ function weightsAt(
   z: number,
   reach: number,
 ): readonly (readonly [number, number])[] {
-  const distances = solids.map((solid) => solid.distance(x, y, z));
+  const near = solids.filter(({ low, high }) => {
+    const [beforeX, beforeY, beforeZ] = [low.x - x, low.y - y, low.z - z];
+    const beyond = Math.max(beforeX, beforeY, beforeZ, x - high.x, y - high.y, z - high.z);
+    return beyond < FAR * reach;
+  });
+  const distances = near.map((solid) => solid.distance(x, y, z));
   const nearest = Math.min(...distances);
-  const sums = new Float64Array(PARTS.length);
-  solids.forEach((solid, place) => {
+  const sums = new Map<number, number>();
+  near.forEach((solid, place) => {
     const weight = Math.exp((nearest - (distances[place] ?? 0)) / reach);
     for (const [part, share] of solid.shares(y)) {
-      const at = PARTS.indexOf(part);
-      sums[at] = (sums[at] ?? 0) + weight * share;
+      const at = NUMBERS[part];
+      sums.set(at, (sums.get(at) ?? 0) + weight * share);
     }
   });
-  const most = [...sums.entries()].sort((a, b) => b[1] - a[1]).slice(0, MAX_PARTS);
+  const most = [...sums].sort((a, b) => b[1] - a[1]).slice(0, MAX_PARTS);
   const total = most.reduce((sum, [, weight]) => sum + weight, 0);
-  return most.map(([part, weight]) => [part, weight / total] as const);
+  const found = most.map(([part, weight]) => [part, weight / total] as const);
+  return [...found, ...NONE.slice(found.length)];
 }
 
 /** How much of each point belongs to a side: (vertices,), from 0 to 1. */

@@ -3,7 +3,7 @@
  * rods with round ends. Each gives the distance of a point from its surface (below 0 inside), and
  * the parts of the body that move it.
  */
-import { Matrix3, Vector3 } from "three";
+import { Vector3 } from "three";
 import { SIDES, type Landmarks } from "./anatomy";
 import type { Part } from "./frames";
 import type { Rest } from "./rest";
@@ -216,13 +216,15 @@ export function rod(
     low: from.clone().min(to).subScalar(most),
     high: from.clone().max(to).addScalar(most),
     distance: (x, y, z) => {
-      const [dx, dy, dz] = [x - from.x, y - from.y, z - from.z];
+      let dx = x - from.x;
+      let dy = y - from.y;
+      let dz = z - from.z;
       const dot = dx * along.x + dy * along.y + dz * along.z;
       const share = squared > 0 ? Math.min(1, Math.max(0, dot / squared)) : 0;
-      return (
-        Math.hypot(dx - share * along.x, dy - share * along.y, dz - share * along.z) -
-        (start + share * (end - start))
-      );
+      dx -= share * along.x;
+      dy -= share * along.y;
+      dz -= share * along.z;
+      return Math.sqrt(dx * dx + dy * dy + dz * dz) - (start + share * (end - start));
     },
   };
 }
@@ -235,21 +237,20 @@ export function ellipsoid(
   shares: (y: number) => Shares,
   axis = new Vector3(0, 1, 0),
 ): Solid {
-  // prettier-ignore
-  const turn = new Matrix3().set(axis.y, -axis.x, 0, axis.x, axis.y, 0, 0, 0, 1);
   const most = Math.max(radii.x, radii.y, radii.z);
-  const point = new Vector3();
+  const [ax, ay] = [1 / radii.x, 1 / radii.y];
+  const az = 1 / radii.z;
   return {
     shares,
     low: middle.clone().subScalar(most),
     high: middle.clone().addScalar(most),
     distance: (x, y, z) => {
-      point
-        .set(x - middle.x, y - middle.y, z - middle.z)
-        .applyMatrix3(turn)
-        .divide(radii);
-      const far = point.length();
-      const steep = point.divide(radii).length();
+      const [dx, dy] = [x - middle.x, y - middle.y];
+      const across = (axis.y * dx - axis.x * dy) * ax;
+      const along = (axis.x * dx + axis.y * dy) * ay;
+      const deep = (z - middle.z) * az;
+      const far = Math.sqrt(across * across + along * along + deep * deep);
+      const steep = Math.sqrt((across * ax) ** 2 + (along * ay) ** 2 + (deep * az) ** 2);
       return steep > 0 ? (far * (far - 1)) / steep : -Math.min(radii.x, radii.y, radii.z);
     },
   };

@@ -13,6 +13,8 @@ export interface Surface {
 
 /** Where no solid is near. */
 const FAR = 1;
+/** Cells: so far from the surface, no cell is cut by it; distances are right within a factor of 2. */
+const CLEAR = 4;
 
 /** The surface at 0 of the union of `solids`, whose seams are `round` meters wide. */
 export function surfaceOf(solids: readonly Solid[], cell: number, round: number): Surface {
@@ -85,6 +87,7 @@ function vertices({ values, size, steps, low, cell }: Grid): {
     for (let j = 0; j + 1 < size[1]; j += 1) {
       for (let i = 0; i + 1 < size[0]; i += 1) {
         const at = i + steps[1] * j + steps[2] * k;
+        if (Math.abs(values[at] ?? FAR) > CLEAR * cell) continue;
         const middle = cutOf(offsets.map((offset) => values[at + offset] ?? FAR));
         if (!middle) continue;
         numbers.set(at, points.length / 3);
