@@ -20,7 +20,7 @@ import { poseAt, type PoseOptions, type Rig } from "./pose";
 import { anatomyOf, type Anatomy } from "./skin/anatomy";
 import { Eyes } from "./skin/eyes";
 import type { Frame } from "./skin/frames";
-import { meshOf, type BodyMesh } from "./skin/mesh";
+import { FINE, meshOf, type BodyMesh } from "./skin/mesh";
 import { restOf } from "./skin/rest";
 import { Skin } from "./skin/skin";
 
@@ -155,6 +155,8 @@ export class Body {
   constructor(
     readonly source: BodySource,
     colors: BodyColors,
+    /** How fine its skin is: FINE or COARSE. */
+    private readonly cells = FINE,
   ) {
     const { rig, roles } = source;
     const { positions } = rig.motion;
@@ -192,7 +194,6 @@ export class Body {
 
   dispose(): void {
     this.#remove([this.#shape, ...this.#ghosts]);
-    this.#mesh?.geometry.dispose();
     this.#clearTrails();
   }
 
@@ -207,7 +208,7 @@ export class Body {
   #newShape(opacity: number): Shape {
     const { rig, head } = this.source;
     const anatomy = this.#isSkin ? this.#anatomy : null;
-    if (anatomy) this.#mesh ??= meshOf(rig.motion, anatomy);
+    if (anatomy) this.#mesh ??= meshOf(rig.motion, anatomy, this.cells);
     const shape =
       anatomy && this.#mesh
         ? new Skin(rig, anatomy, this.#mesh, opacity)

@@ -15,6 +15,7 @@ import {
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Floor } from "./floor";
 import { Body, type BodyColors, type BodyOptions, type BodySource } from "./body";
+import { COARSE, FINE } from "./skin/mesh";
 import { HOME, type Camera } from "./view";
 
 export interface StageColors {
@@ -64,6 +65,8 @@ const LOOK = new Quaternion().setFromEuler(
 /** Meters between bodies side by side, and beside the outer ones. */
 const APART = 1.4;
 const ROOM = 1.5;
+/** More bodies than this have coarser skins: each is smaller, and software draws them in time. */
+const MAX_FINE = 2;
 /** Meters over a head. */
 const OVER_HEAD = 0.22;
 
@@ -143,7 +146,8 @@ export class Stage {
       body.group.removeFromParent();
       body.dispose();
     }
-    this.#bodies = sources.map((source, place) => new Body(source, this.#colorsOf(place)));
+    const cells = sources.length > MAX_FINE ? COARSE : FINE;
+    this.#bodies = sources.map((source, place) => new Body(source, this.#colorsOf(place), cells));
     const angle = MathUtils.degToRad(HOME.azimuth);
     this.#bodies.forEach(({ group }, place) => {
       const beside = APART * (place - (this.#bodies.length - 1) / 2);

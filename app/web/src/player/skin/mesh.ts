@@ -1,10 +1,5 @@
 /** The skin of a body as a mesh: its surface at rest, and the parts that move each of its points. */
-import {
-  BufferGeometry,
-  Float32BufferAttribute,
-  Uint16BufferAttribute,
-  BufferAttribute,
-} from "three";
+import { BufferAttribute, BufferGeometry } from "three";
 import type { SkeletonMotion } from "$/motion/motion";
 import type { Side } from "$/motion/skeleton";
 import { PARTS, type Part } from "./frames";
@@ -13,28 +8,38 @@ import { restOf, type Rest } from "./rest";
 import { solidsOf, type Solid } from "./solids";
 import { surfaceOf } from "./surface";
 
-/** Shares of the stature: the size of a cell of the surface, and the width of a seam. */
-const CELL = 1 / 100;
+/** Cells of the surface in a person's height: of one who is seen large, and of one of many. */
+export const FINE = 90;
+export const COARSE = 60;
+/** Shares of the stature: the width of a seam. */
 const ROUND = 0.018;
 /** Meters for a person of 1 m: a solid so much farther than the nearest moves a point e times less. */
 const REACH = 0.006;
 /** Beyond this many of them it moves nothing. */
 const FAR = 12;
-/** Parts that move one point: what a GPU takes. */
-const MAX_PARTS = 4;
+/** Parts that move one point: more would not be seen. */
+export const MAX_PARTS = 4;
 const NONE = Array.from({ length: MAX_PARTS }, () => [0, 0] as const);
 const NUMBERS = Object.fromEntries(PARTS.map((part, at) => [part, at])) as Record<Part, number>;
 
 export interface BodyMesh {
   readonly rest: Rest;
-  readonly geometry: BufferGeometry;
+  /** (vertices, 3) meters, at rest, and unit vectors. */
+  readonly points: Float32Array;
+  readonly normals: Float32Array;
+  /** (triangles, 3) vertices. */
+  readonly triangles: Uint32Array;
+  /** (vertices, MAX_PARTS) the parts that move each point, and their weights, which fall and sum
+      to 1. */
+  readonly indices: Uint8Array;
+  readonly weights: Float32Array;
 }
 
-/** The mesh of the body in a motion: at rest, with its weights as three.js's SkinnedMesh has them. */
-export function meshOf(motion: SkeletonMotion, anatomy: Anatomy): BodyMesh {
+/** The mesh of the body in a motion, at rest; `cells`: of the surface in the person's height. */
+export function meshOf(motion: SkeletonMotion, anatomy: Anatomy, cells = FINE): BodyMesh {
   const rest = restOf(motion, anatomy);
   const solids = solidsOf(rest);
-  const { points, triangles } = surfaceOf(solids, CELL * rest.stature, ROUND * rest.stature);
+  const { points, triangles } = surfaceOf(solids, rest.stature / cells, ROUND * rest.stature);
   const indices: number[] = [];
   const weights: number[] = [];
   for (let at = 0; at < points.length; at += 3) {
@@ -44,13 +49,22 @@ export function meshOf(motion: SkeletonMotion, anatomy: Anatomy): BodyMesh {
       weights.push(weight);
     }
   }
+  return {
+    rest,
+    points,
+    normals: normalsOf(points, triangles),
+    triangles,
+    indices: new Uint8Array(indices),
+    weights: new Float32Array(weights),
+  };
+}
+
+function normalsOf(points: Float32Array, triangles: Uint32Array): Float32Array {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(points, 3));
-  geometry.setAttribute("skinIndex", new Uint16BufferAttribute(indices, MAX_PARTS));
-  geometry.setAttribute("skinWeight", new Float32BufferAttribute(weights, MAX_PARTS));
   geometry.setIndex(new BufferAttribute(triangles, 1));
   geometry.computeVertexNormals();
-  return { rest, geometry };
+  return geometry.getAttribute("normal").array as Float32Array;
 }
 
 /** The MAX_PARTS parts that move a point most, and their weights; the weights sum to 1. */
@@ -83,14 +97,12 @@ function weightsAt(
 }
 
 /** How much of each point belongs to a side: (vertices,), from 0 to 1. */
-export function sharesOf({ geometry }: BodyMesh, side: Side): Float32Array {
-  const indices = geometry.getAttribute("skinIndex");
-  const weights = geometry.getAttribute("skinWeight");
+export function sharesOf({ indices, weights }: BodyMesh, side: Side): Float32Array {
   const sides = PARTS.map((part) => (/^(left|right)_/.exec(part)?.[1] ?? "trunk") === side);
-  return Float32Array.from({ length: indices.count }, (_, vertex) => {
+  return Float32Array.from({ length: weights.length / MAX_PARTS }, (_, vertex) => {
     let sum = 0;
-    for (let place = 0; place < MAX_PARTS; place += 1) {
-      if (sides[indices.getComponent(vertex, place)]) sum += weights.getComponent(vertex, place);
+    for (let place = vertex * MAX_PARTS; place < (vertex + 1) * MAX_PARTS; place += 1) {
+      if (sides[indices[place] ?? 0]) sum += weights[place] ?? 0;
     }
     return sum;
   });

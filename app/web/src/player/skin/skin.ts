@@ -1,20 +1,27 @@
-/** A body with a skin in the scene: a mesh that the landmarks of each pose move. */
+/**
+ * A body with a skin in the scene: a mesh that the landmarks of each pose move.
+ *
+ * Its points are moved here, not by three.js's SkinnedMesh: where WebGL is drawn by software, that
+ * reads 16 texels for each point of each picture, which costs more than twice the time.
+ */
 import {
-  Bone,
+  BufferAttribute,
+  BufferGeometry,
   Color,
+  DynamicDrawUsage,
   Float32BufferAttribute,
   Group,
   MathUtils,
   Matrix4,
+  Mesh,
   MeshLambertMaterial,
-  Skeleton,
-  SkinnedMesh,
 } from "three";
 import type { Side } from "$/motion/skeleton";
 import { poseAt, type PoseOptions, type Rig } from "../pose";
 import { emptyLandmarks, landmarksOf, type Anatomy } from "./anatomy";
 import { Frames, PARTS } from "./frames";
 import { sharesOf, type BodyMesh } from "./mesh";
+import { skinned } from "./skinned";
 
 /** Where limb and trunk meet, the color changes within this share of the weights. */
 const SEAM = [0.35, 0.65] as const;
@@ -25,8 +32,8 @@ const MILD = 0.45;
 
 export class Skin {
   readonly group = new Group();
-  readonly #mesh: SkinnedMesh<BodyMesh["geometry"], MeshLambertMaterial>;
-  readonly #bones = PARTS.map(() => new Bone());
+  readonly #geometry = new BufferGeometry();
+  readonly #material: MeshLambertMaterial;
   readonly #matrices = PARTS.map(() => new Matrix4());
   readonly #frames: Frames;
   readonly #landmarks = emptyLandmarks();
@@ -41,25 +48,20 @@ export class Skin {
     const isGhost = opacity < 1;
     this.#pose = new Float32Array(rig.motion.joints * 3);
     this.#frames = new Frames(made.rest.at);
-    const material = new MeshLambertMaterial({
+    this.#material = new MeshLambertMaterial({
       vertexColors: true,
       transparent: isGhost,
       opacity,
       depthWrite: !isGhost,
     });
-    this.#mesh = new SkinnedMesh(made.geometry, material);
-    this.#mesh.frustumCulled = false;
-    for (const bone of this.#bones) bone.matrixAutoUpdate = false;
-    this.#mesh.add(...this.#bones);
-    // The matrices of the parts lead from rest to the pose already: nothing is to be taken back.
-    this.#mesh.bind(
-      new Skeleton(
-        this.#bones,
-        PARTS.map(() => new Matrix4()),
-      ),
-      new Matrix4(),
-    );
-    this.group.add(this.#mesh);
+    this.#geometry.setIndex(new BufferAttribute(made.triangles, 1));
+    for (const name of ["position", "normal"] as const) {
+      const moved = new BufferAttribute(new Float32Array(made.points.length), 3);
+      this.#geometry.setAttribute(name, moved.setUsage(DynamicDrawUsage));
+    }
+    const mesh = new Mesh(this.#geometry, this.#material);
+    mesh.frustumCulled = false;
+    this.group.add(mesh);
   }
 
   color(colors: Readonly<Record<Side, string>>): void {
@@ -76,22 +78,30 @@ export class Skin {
       }
       color.toArray(values, vertex * 3);
     }
-    this.made.geometry.setAttribute("color", new Float32BufferAttribute(values, 3));
+    this.#geometry.setAttribute("color", new Float32BufferAttribute(values, 3));
   }
 
   show(seconds: number, options: PoseOptions): Float32Array {
     poseAt(this.rig, seconds, options, this.#pose);
     this.#frames.show(landmarksOf(this.anatomy, this.#pose, this.#landmarks), this.#matrices);
-    this.#bones.forEach((bone, part) => {
-      bone.matrix.copy(this.#matrices[part] ?? bone.matrix);
-      bone.matrixWorldNeedsUpdate = true;
-    });
+    const [points, normals] = ["position", "normal"].map((name) =>
+      this.#geometry.getAttribute(name),
+    );
+    if (points && normals) {
+      skinned(
+        this.made,
+        this.#matrices,
+        points.array as Float32Array,
+        normals.array as Float32Array,
+      );
+      points.needsUpdate = normals.needsUpdate = true;
+    }
     return this.#pose;
   }
 
   dispose(): void {
-    this.#mesh.skeleton.dispose();
-    this.#mesh.material.dispose();
+    this.#geometry.dispose();
+    this.#material.dispose();
   }
 }
 
