@@ -2,8 +2,9 @@
 
 Run: pytest -m bench -s tests/bench/test_player.py
 Chromium draws by software (SwiftShader), as on a laptop without a GPU. Four clips play in step, in
-a window of 1280 x 800. A picture counts when the page has shown another time. The figures are
-printed and not asserted (target of issue 11: 30 a second), since they depend on the load.
+a window of 1280 x 800. A picture counts when the page has shown another time. The processor time
+of the browser with all its processes is printed too: it says more on a busy machine. The figures
+are not asserted (target of issue 11: 30 pictures a second).
 """
 
 from __future__ import annotations
@@ -13,14 +14,17 @@ import os
 import re
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
+import psutil
 import pytest
 from playwright.sync_api import Page, expect, sync_playwright
 
 from app.api.web_pages import DIST
 from app.demo import demo_clips
 from tests.bench.page import Section
+from tests.bench.processes import tree_of
 from tests.live import Live, serve
 from tests.web.browser import launch, opened, why_not
 
@@ -68,7 +72,8 @@ def page(service: tuple[Live, list[str]]) -> Iterator[Page]:
         pytest.skip(reason)
     with sync_playwright() as playwright:
         browser = launch(playwright)
-        with opened(browser, service[0].url) as page:
+        # Without fitted models, the page says that it cannot recognize anybody.
+        with opened(browser, service[0].url, expected=("409",)) as page:
             yield page
         browser.close()
 
@@ -92,12 +97,25 @@ def test_pictures_a_second(service: tuple[Live, list[str]], page: Page) -> None:
         for name, view in VIEWS.items():
             ready = _open(page, ids[:count], view)
             page.keyboard.press("Space")
+            before = _browser_seconds()
             rate, longest = page.evaluate(COUNT, SECONDS)
-            FIGURES.print(
-                f"{count} bodies, {name:<14} {rate:5.1f} pictures/s, at most {longest:4.0f} ms apart;"
-                f" ready after {ready:.1f} s"
-            )
             assert rate > 0
+            each = 1e3 * (_browser_seconds() - before) / (rate * SECONDS)
+            FIGURES.print(
+                f"{count} bodies, {name:<12} {rate:5.1f} pictures/s, at most {longest:4.0f} ms"
+                f" apart; {each:3.0f} ms of processor time each; ready after {ready:.1f} s"
+            )
+
+
+def _browser_seconds() -> float:
+    """Processor time of the browser that this process has started, and of its processes."""
+    total = 0.0
+    for process in tree_of(psutil.Process())[1:]:
+        with suppress(psutil.Error):
+            if "chrom" in process.name():
+                times = process.cpu_times()
+                total += times.user + times.system
+    return total
 
 
 def test_bytes(service: tuple[Live, list[str]], page: Page) -> None:
@@ -110,10 +128,10 @@ def test_bytes(service: tuple[Live, list[str]], page: Page) -> None:
         for name in sorted(loaded)
         if name.endswith(".js") and (path := _script(name)).exists()
     }
-    player = {name: size for name, size in sizes.items() if name.startswith("stage")}
-    FIGURES.print(f"scripts of the page of a clip: {sum(sizes.values()) / 1e3:.0f} kB gzipped,")
-    FIGURES.print(f"  {sum(player.values()) / 1e3:.0f} kB of them three.js and the player's stage")
-    assert player
+    FIGURES.print(f"scripts of the page of a clip: {sum(sizes.values()) / 1e3:.0f} kB gzipped")
+    for part in ("three", "stage", "Player"):
+        (size,) = [size for name, size in sizes.items() if name.startswith(part)]
+        FIGURES.print(f"  {part:<7} {size / 1e3:4.0f} kB")
 
 
 def _script(name: str) -> Path:

@@ -1,5 +1,4 @@
 /** The skin of a body as a mesh: its surface at rest, and the parts that move each of its points. */
-import { BufferAttribute, BufferGeometry } from "three";
 import type { SkeletonMotion } from "$/motion/motion";
 import type { Side } from "$/motion/skeleton";
 import { PARTS, type Part } from "./frames";
@@ -39,7 +38,11 @@ export interface BodyMesh {
 export function meshOf(motion: SkeletonMotion, anatomy: Anatomy, cells = FINE): BodyMesh {
   const rest = restOf(motion, anatomy);
   const solids = solidsOf(rest);
-  const { points, triangles } = surfaceOf(solids, rest.stature / cells, ROUND * rest.stature);
+  const { points, normals, triangles } = surfaceOf(
+    solids,
+    rest.stature / cells,
+    ROUND * rest.stature,
+  );
   const indices: number[] = [];
   const weights: number[] = [];
   for (let at = 0; at < points.length; at += 3) {
@@ -52,19 +55,11 @@ export function meshOf(motion: SkeletonMotion, anatomy: Anatomy, cells = FINE): 
   return {
     rest,
     points,
-    normals: normalsOf(points, triangles),
+    normals,
     triangles,
     indices: new Uint8Array(indices),
     weights: new Float32Array(weights),
   };
-}
-
-function normalsOf(points: Float32Array, triangles: Uint32Array): Float32Array {
-  const geometry = new BufferGeometry();
-  geometry.setAttribute("position", new BufferAttribute(points, 3));
-  geometry.setIndex(new BufferAttribute(triangles, 1));
-  geometry.computeVertexNormals();
-  return geometry.getAttribute("normal").array as Float32Array;
 }
 
 /** The MAX_PARTS parts that move a point most, and their weights; the weights sum to 1. */

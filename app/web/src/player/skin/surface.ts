@@ -1,12 +1,14 @@
 /**
  * The surface of solids that run into each other, as triangles: naive surface nets (Gibson 1998,
- * "Constrained elastic surface nets", without the relaxation) on a grid of their smooth union.
+ * "Constrained elastic surface nets") on a grid of their smooth union, moved onto the surface.
  */
+import { Vector3 } from "three";
 import type { Solid } from "./solids";
 
 export interface Surface {
-  /** (vertices, 3) meters. */
+  /** (vertices, 3) meters, and unit vectors that point outward. */
   readonly points: Float32Array;
+  readonly normals: Float32Array;
   /** (triangles, 3) vertices, seen from outside against the clock. */
   readonly triangles: Uint32Array;
 }
@@ -15,12 +17,66 @@ export interface Surface {
 const FAR = 1;
 /** Cells: so far from the surface, no cell is cut by it; distances are right within a factor of 2. */
 const CLEAR = 4;
+/** Newton's steps, and the cells of the differences that give the slope. */
+const STEPS = 2;
+const DIFFERENCE = 0.1;
 
 /** The surface at 0 of the union of `solids`, whose seams are `round` meters wide. */
 export function surfaceOf(solids: readonly Solid[], cell: number, round: number): Surface {
   const grid = gridOf(solids, cell, round);
   const found = vertices(grid);
-  return { points: new Float32Array(found.points), triangles: faces(grid, found.numbers) };
+  const points = new Float32Array(found.points);
+  const normals = settled(points, solids, cell, round);
+  return { points, normals, triangles: faces(grid, found.numbers) };
+}
+
+/** Moves points onto the surface (Newton's method); gives the normals there. */
+function settled(
+  points: Float32Array,
+  solids: readonly Solid[],
+  cell: number,
+  round: number,
+): Float32Array {
+  const normals = new Float32Array(points.length);
+  const point = new Vector3();
+  const normal = new Vector3();
+  for (let at = 0; at < points.length; at += 3) {
+    point.fromArray(points, at);
+    const near = solids.filter(({ low, high }) => isNear(point, low, high, round + cell));
+    for (let step = 0; step < STEPS; step += 1) {
+      const distance = distanceAt(near, point.x, point.y, point.z, round);
+      const small = cell * DIFFERENCE;
+      normal.set(
+        distanceAt(near, point.x + small, point.y, point.z, round) - distance,
+        distanceAt(near, point.x, point.y + small, point.z, round) - distance,
+        distanceAt(near, point.x, point.y, point.z + small, round) - distance,
+      );
+      const steep = normal.length() / small;
+      normal.normalize();
+      const move = steep > 0 ? distance / steep : 0;
+      point.addScaledVector(normal, -Math.min(Math.max(move, -cell / 2), cell / 2));
+    }
+    point.toArray(points, at);
+    normal.toArray(normals, at);
+  }
+  return normals;
+}
+
+function isNear({ x, y, z }: Vector3, low: Vector3, high: Vector3, margin: number): boolean {
+  const beyond = Math.max(low.x - x, low.y - y, low.z - z, x - high.x, y - high.y, z - high.z);
+  return beyond < margin;
+}
+
+function distanceAt(
+  solids: readonly Solid[],
+  x: number,
+  y: number,
+  z: number,
+  round: number,
+): number {
+  let found = FAR;
+  for (const solid of solids) found = united(found, solid.distance(x, y, z), round);
+  return found;
 }
 
 interface Grid {
