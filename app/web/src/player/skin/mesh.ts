@@ -9,7 +9,7 @@ import { surfaceOf } from "./surface";
 
 /** Cells of the surface in a person's height: of one who is seen large, and of one of many. */
 export const FINE = 90;
-export const COARSE = 60;
+export const COARSE = 52;
 /** Shares of the stature: the width of a seam. */
 const ROUND = 0.018;
 /** Meters for a person of 1 m: a solid so much farther than the nearest moves a point e times less. */
