@@ -51,7 +51,10 @@ CLIP = ClipRecord(
     tempo=None,
     roles={"hips": "Hips"},
     missing_roles=("head",),
-    warnings=(ClipWarning("frame_rate_suspect", "looks like 60", 60.0),),
+    warnings=(
+        ClipWarning("frame_rate_suspect", "looks like 60", 60.0),
+        ClipWarning("bone_length_jumps", "a jump", None, 0.5, 0.75, "LeftHand"),
+    ),
     created_at=NOW,
     error={"code": "unreadable", "detail": "Bad."},
     metres_per_unit=0.01,
@@ -78,8 +81,17 @@ def test_a_clip_shows_only_the_fields_of_its_schema() -> None:
     assert set(shown) == CLIP_FIELDS
     assert "secret" not in str(shown)
     assert (shown["words"], shown["missing_roles"]) == (["walk", "slow"], ["head"])
+    nowhere = {"start": None, "end": None, "joint": None}
     assert shown["warnings"] == [
-        {"code": "frame_rate_suspect", "detail": "looks like 60", "likely": 60.0}
+        {"code": "frame_rate_suspect", "detail": "looks like 60", "likely": 60.0, **nowhere},
+        {
+            "code": "bone_length_jumps",
+            "detail": "a jump",
+            "likely": None,
+            "start": 0.5,
+            "end": 0.75,
+            "joint": "LeftHand",
+        },
     ]
     assert (shown["frame_rate"], shown["has_audio"], shown["audio_offset"]) == (30.0, True, -1.5)
     assert (shown["error"]["code"], shown["error"]["detail"]) == ("unreadable", "Bad.")

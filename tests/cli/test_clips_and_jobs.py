@@ -125,7 +125,11 @@ def test_doubts_and_the_start_of_a_clip_are_shown(kinedex_alone: Kinedex, tmp_pa
     assert "LeftKnee" in said
     assert "frames 40 to 49" in said
     (clip,) = _ids(kinedex_alone)
-    assert kinedex_alone("clips", "show", clip, "--json").json()["start_offset"] == 0.3
+    found = kinedex_alone("clips", "show", clip, "--json").json()
+    assert found["start_offset"] == 0.3
+    jumps = [each for each in found["warnings"] if each["code"] == "bone_length_jumps"]
+    assert {(each["start"], each["end"]) for each in jumps} == {(0.4, 0.49)}
+    assert "LeftKnee" in {each["joint"] for each in jumps}
     shown = " ".join(kinedex_alone("clips", "show", clip).out.split())
     assert "begins 0.300 s after the start of the file" in shown
     assert "warning bone_length_jumps" in shown

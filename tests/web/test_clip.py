@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from typing import Any, Protocol
 from urllib.parse import parse_qs, urlsplit
 
 import pytest
-from playwright.sync_api import Browser, Locator, Page, expect
+from playwright.sync_api import Browser, Locator, Page, Route, expect
 
-from tests.live import Live
+from tests.live import NET_S, Live, wait_until
 from tests.web.accessibility import serious_faults
 from tests.web.browser import LOOKS, Scheme, opened
 from tests.web.pixels import colors_of
@@ -57,9 +58,112 @@ def query_of(page: Page) -> dict[str, list[str]]:
     return parse_qs(urlsplit(page.url).query)
 
 
-def test_skeletons_are_drawn(page: Page, open_clip: OpenClip) -> None:
+def picture(page: Page) -> bytes:
+    return player(page).locator("canvas").screenshot()
+
+
+def wait_for_picture(page: Page, wanted: Callable[[bytes], bool]) -> bytes:
+    """The player's picture when it is as `wanted`: it is drawn with the browser's next frame."""
+    found: list[bytes] = []
+
+    def is_seen() -> bool:
+        found.append(picture(page))
+        return wanted(found[-1])
+
+    wait_until(is_seen, NET_S)
+    return found[-1]
+
+
+def test_a_body_is_drawn_and_its_bones_are(page: Page, open_clip: OpenClip) -> None:
     open_clip(page)
     assert lit(page) > 100
+    skin = picture(page)
+    page.keyboard.press("b")
+    expect(page).to_have_url(re.compile("body=bones"))
+    expect(page.get_by_role("button", name="Body")).to_have_attribute("aria-pressed", "false")
+    wait_for_picture(page, lambda now: now != skin)
+    assert lit(page) > 100
+    page.get_by_role("button", name="Body").click()
+    expect(page).not_to_have_url(re.compile("body="))
+    wait_for_picture(page, lambda now: now == skin)
+
+
+def test_a_body_without_known_roles_is_bones(page: Page, open_clip: OpenClip) -> None:
+    """So are the skeletons of animals, whose roles a client named."""
+    change_clip(page, roles={"hips": "Hips"})
+    open_clip(page)
+    assert lit(page) > 100
+    expect(page.get_by_role("button", name="Mirror")).to_be_visible()
+    expect(page.get_by_role("button", name="Body")).to_have_count(0)
+    expect(page.get_by_role("button", name="First person")).to_have_count(0)
+
+
+def test_the_view_of_the_first_person_is_taken_and_left(page: Page, open_clip: OpenClip) -> None:
+    open_clip(page, "?t=1")
+    first = picture(page)
+    page.keyboard.press("e")
+    expect(page).to_have_url(re.compile("eyes=1"))
+    seen = wait_for_picture(page, lambda now: now != first)
+    page.reload()
+    expect(player(page)).to_have_attribute("data-ready", "")
+    wait_for_picture(page, lambda now: now == seen)
+    page.get_by_role("button", name="Reset the camera").click()
+    expect(page).not_to_have_url(re.compile("eyes="))
+    wait_for_picture(page, lambda now: now == first)
+
+
+def test_a_reset_brings_the_first_view_back(page: Page, open_clip: OpenClip) -> None:
+    open_clip(page)
+    first = picture(page)
+    open_clip(page, "?cam=-120,60,2.5,0.4,0.2,0&follow=0")
+    turned = wait_for_picture(page, lambda now: now != first)
+    assert lit(page) > 100
+    page.get_by_role("button", name="Reset the camera").click()
+    wait_for_picture(page, lambda now: now == first)
+    assert query_of(page) == {}
+    assert turned != first
+
+
+def change_clip(page: Page, **fields: object) -> None:
+    """Answers about single clips have other fields, as those of other files have."""
+
+    def answer(route: Route) -> None:
+        response = route.fetch()
+        route.fulfill(response=response, json=response.json() | fields)
+
+    page.route(re.compile(r"/v1/clips/clip_\w+$"), answer)
+
+
+WARNINGS = [
+    {"code": "unit_guessed", "detail": "It may be in cm.", "likely": 0.01},
+    {
+        "code": "bone_length_jumps",
+        "detail": "The forearm has 0.9 m.",
+        "likely": None,
+        "start": 1.2,
+        "end": 1.4,
+        "joint": "LeftHand",
+    },
+]
+
+
+def test_a_warning_leads_to_its_place(page: Page, open_clip: OpenClip) -> None:
+    change_clip(page, warnings=WARNINGS)
+    open_clip(page)
+    recording = page.get_by_role("region", name="The recording")
+    expect(recording.get_by_role("listitem")).to_have_count(2)
+    expect(player(page).locator("svg text")).to_have_text("bone length jumps: LeftHand")
+    recording.get_by_role("button", name="Show 1.20 – 1.40 s, LeftHand").click()
+    expect(page).to_have_url(re.compile("t=1.2&joint=LeftHand"))
+    time = player(page).get_by_role("slider", name="Time")
+    expect(time).to_have_attribute("aria-valuenow", "1.2")
+    expect(player(page).locator(".marked")).to_have_text("LeftHand")
+    expect(player(page).locator(".marked")).to_be_in_viewport()
+    page.keyboard.press("Escape")
+    expect(player(page).locator(".marked")).to_have_count(0)
+    page.go_back()
+    expect(page).to_have_url(re.compile(r"/clips/clip_\w+$"))
+    expect(time).to_have_attribute("aria-valuenow", "0")
 
 
 def test_it_plays_and_stops_and_the_time_is_an_address(page: Page, open_clip: OpenClip) -> None:

@@ -15,6 +15,16 @@ class ClipWarning(Outgoing):
     code: str
     detail: str
     likely: float | None = Field(None, description="The value that is probably right, if any.")
+    start: float | None = Field(
+        None,
+        description="Seconds of the clip: the first doubtful frame, or the worst of several"
+        " stretches; null: the doubt is about the whole clip.",
+    )
+    end: float | None = Field(None, description="Seconds of the clip: the last doubtful frame.")
+    joint: str | None = Field(
+        None,
+        description="The doubtful joint or marker, or the first of them: its name in the file.",
+    )
 
 
 class Difference(Outgoing):

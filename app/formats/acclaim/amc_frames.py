@@ -251,10 +251,14 @@ class _Reader:
         at_times = [bone for bone in self.absent if bone not in always]
         if always:
             detail = "the motion does not contain these bones, which stay at rest: "
-            yield Caution("bones_missing", detail + self._listed(always))
+            yield Caution(
+                "bones_missing", detail + self._listed(always), joint=self.names[always[0]]
+            )
         if at_times:
             detail = "some frames do not contain these bones, which keep their pose: "
-            yield Caution("bones_missing", detail + self._listed(at_times))
+            yield Caution(
+                "bones_missing", detail + self._listed(at_times), joint=self.names[at_times[0]]
+            )
 
     def _listed(self, bones: list[int]) -> str:
         shown = ", ".join(self.names[bone] for bone in bones[:MAX_BONES_SHOWN])

@@ -257,7 +257,7 @@ class _Reader:
         if not self.root.angles.any():
             return ()
         detail = "the root has an orientation before it moves, which programs read differently"
-        return (Caution("root_orientation", detail),)
+        return (Caution("root_orientation", detail, joint="root"),)
 
 
 _ROOT = b"root"

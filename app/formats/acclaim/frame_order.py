@@ -36,10 +36,12 @@ def in_number_order(frames: AmcFrames) -> OrderedFrames:
     cautions: list[Caution] = []
     order = np.argsort(frames.numbering, kind="stable")
     numbering, lines = frames.numbering[order], frames.lines[order]
-    if not np.array_equal(order, np.arange(len(order))):
-        first = int(lines[np.flatnonzero(order != np.arange(len(order)))[0]])
+    moved = np.flatnonzero(order != np.arange(len(order)))
+    if len(moved):
+        first = int(lines[moved[0]])
         detail = f"line {first}: frames do not come in the order of their numbers; sorted"
-        cautions.append(Caution("frames_out_of_order", detail))
+        place = (int(moved[0]), int(moved[-1]) + 1)
+        cautions.append(Caution("frames_out_of_order", detail, frames=place))
     steps = np.diff(numbering)
     if (steps == 0).any():
         line = int(lines[1:][steps == 0][0])
@@ -57,11 +59,21 @@ def in_number_order(frames: AmcFrames) -> OrderedFrames:
             int(lines[1:][wide][0]),
             f"expected frames without gaps, found {_number_after(numbering, wide)}",
         )
+    repeats = np.append(steps // step, 1).astype(np.int64)
     if missing:
         detail = f"{missing} frames are missing; each repeats the frame before it"
-        cautions.append(Caution("frames_missing", detail))
-    repeats = np.append(steps // step, 1).astype(np.int64)
+        cautions.append(Caution("frames_missing", detail, frames=_longest_repeat(repeats)))
     return OrderedFrames(np.repeat(frames.numbers[order], repeats, axis=0), step, tuple(cautions))
+
+
+def _longest_repeat(repeats: IntArray) -> tuple[int, int]:
+    """The frames that repeat the same one most often: the first, and the one after the last.
+
+    repeats: (frames,) how often each frame of the file occurs.
+    """
+    longest = int(np.argmax(repeats))
+    end = int(repeats[: longest + 1].sum())
+    return end - int(repeats[longest]) + 1, end
 
 
 def _number_after(numbering: IntArray, chosen: BoolArray) -> int:

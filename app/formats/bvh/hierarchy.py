@@ -243,4 +243,5 @@ class _Reader:
         if not twice:
             return ()
         shown = ", ".join(twice[:5])
-        return (Caution("duplicate_names", f"several joints have the same name: {shown}"),)
+        detail = f"several joints have the same name: {shown}"
+        return (Caution("duplicate_names", detail, joint=twice[0]),)

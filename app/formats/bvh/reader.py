@@ -78,7 +78,8 @@ def _unused_caution(hierarchy: Hierarchy, unused: frozenset[int]) -> tuple[Cauti
     names = ", ".join(hierarchy.skeleton.names[joint] for joint in sorted(unused)[:MAX_NAMED])
     more = f" and {len(unused) - MAX_NAMED} more" if len(unused) > MAX_NAMED else ""
     detail = f"position channels that are 0 in every frame are not used: {names}{more}"
-    return (Caution("position_channels_unused", detail),)
+    joint = hierarchy.skeleton.names[min(unused)]
+    return (Caution("position_channels_unused", detail, joint=joint),)
 
 
 def _solve(hierarchy: Hierarchy, numbers: FloatArray, unused: frozenset[int]) -> Solved:

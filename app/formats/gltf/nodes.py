@@ -223,12 +223,13 @@ def _name(node: Json, index: int) -> str:
 def _cautions(names: list[str], others: list[str]) -> tuple[Caution, ...]:
     cautions = []
     if others:
-        detail = f"the file has {len(others) + 1} skeletons; {names[0]} was read, not "
-        cautions.append(Caution("skeleton_chosen", detail + ", ".join(others[:5])))
+        shown = ", ".join(others[:5])
+        detail = f"the file has {len(others) + 1} skeletons; {names[0]} was read, not {shown}"
+        cautions.append(Caution("skeleton_chosen", detail, joint=names[0]))
     twice = [name for name, count in Counter(names).items() if count > 1]
     if twice:
         detail = f"several joints have the same name: {', '.join(twice[:5])}"
-        cautions.append(Caution("duplicate_names", detail))
+        cautions.append(Caution("duplicate_names", detail, joint=twice[0]))
     return tuple(cautions)
 
 

@@ -9,7 +9,6 @@ other subjects, and markers that are seen too rarely. Cautions name the last two
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -27,7 +26,7 @@ from app.formats.markers.stretches import readable_stretch
 from app.formats.markers.tracks import Tracks
 from app.motion.roles.joint_centers import Center
 from app.motion.roles.joint_roles import JointRole
-from app.motion.skeleton.occlusion import Filled, fill_gaps
+from app.motion.skeleton.occlusion import fill_gaps
 from app.motion.skeleton.recording import Recording
 from app.motion.skeleton.skeleton import Skeleton
 from app.numerics.arrays import FloatArray
@@ -59,11 +58,12 @@ def recording_of_markers(tracks: Tracks, format: str) -> Recording:
         raise too_large("labels", f"expected at most {MAX_JOINTS} labeled markers")
     rate = tracks.frame_rate or RATE_FOR_GAPS
     filled = _filled(markers, rate)
-    stretch = readable_stretch(markers, filled.positions, rate)
-    positions = filled.positions[stretch]
+    stretch = readable_stretch(markers, filled, rate)
+    positions = filled[stretch]
     good = np.isfinite(positions[..., 0]).all(axis=0)
     usable = {marker: positions[:, marker] for marker in np.flatnonzero(good).tolist()}
     centers = centers_of(markers, usable)
+    cautions = stretch_caution(markers, stretch) + gap_cautions(markers, stretch, positions)
     skeleton, positions = _skeleton(markers.labels, usable, centers)
     return Recording(
         format=format,
@@ -75,18 +75,14 @@ def recording_of_markers(tracks: Tracks, format: str) -> Recording:
         up_axis=tracks.up_axis,
         metres_per_unit=tracks.metres_per_unit,
         start_frame=markers.skipped + stretch.start,
-        cautions=tracks.cautions
-        + markers.cautions
-        + stretch_caution(markers, stretch)
-        + gap_cautions(markers, filled.frames, np.flatnonzero(~good).tolist()),
+        cautions=tracks.cautions + markers.cautions + cautions,
     )
 
 
-def _filled(markers: Markers, rate: float) -> Filled:
-    """The markers with short gaps filled by splines, and long ones by their neighbors."""
+def _filled(markers: Markers, rate: float) -> FloatArray:
+    """(frames, markers, 3) short gaps are filled by splines, and long ones by their neighbors."""
     filled = fill_gaps(markers.positions, rate)
-    positions, more = fill_by_neighbors(markers.labels, filled.positions, filled.long_gaps, rate)
-    return replace(filled, positions=positions, frames=filled.frames + more)
+    return fill_by_neighbors(markers.labels, filled.positions, filled.long_gaps, rate)
 
 
 def _skeleton(

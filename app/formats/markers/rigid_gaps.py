@@ -44,12 +44,12 @@ of the body is measured."""
 
 def fill_by_neighbors(
     labels: Sequence[str], positions: FloatArray, gaps: Sequence[Gap], frame_rate: float
-) -> tuple[FloatArray, int]:
-    """The positions with more gaps filled, and the number of filled frames of markers.
+) -> FloatArray:
+    """The positions with more gaps filled.
 
     labels: (markers,). positions: (frames, markers, 3), NaN in the gaps. frame_rate: Hz.
     """
-    filled, count = positions.copy(), 0
+    filled = positions.copy()
     seen = np.isfinite(positions[..., 0])
     size = _size(positions) if gaps else 0.0
     parts = [_part(label) for label in labels]
@@ -68,8 +68,7 @@ def fill_by_neighbors(
         predicted = _predicted(positions, seen, gap, donors if is_rigid else donors[:1])
         if predicted is not None:
             filled[gap.start : gap.end, gap.marker] = predicted
-            count += length
-    return filled, count
+    return filled
 
 
 def _part(label: str) -> int:

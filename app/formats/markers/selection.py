@@ -16,7 +16,7 @@ from app.formats.common.names import without_common_prefix
 from app.formats.markers.tracks import Tracks
 from app.kinedex_error import Place
 from app.motion.roles.marker_names import is_marker, markers_by_place, subject_and_label
-from app.motion.skeleton.occlusion import Gap, without_sentinels
+from app.motion.skeleton.occlusion import Gap, hidden, longest_gap, without_sentinels
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import BoolArray, FloatArray
 
@@ -127,7 +127,8 @@ def _each_once(
     if not twice:
         return list(best.values()), ()
     detail = "several points have the same label; the one seen most often is read: "
-    return list(best.values()), (Caution("duplicate_names", detail + _listed(twice)),)
+    caution = Caution("duplicate_names", detail + _listed(twice), joint=twice[0])
+    return list(best.values()), (caution,)
 
 
 def hidden_too_long(markers: Markers, gaps: Sequence[Gap]) -> Unreadable:
@@ -141,20 +142,26 @@ def hidden_too_long(markers: Markers, gaps: Sequence[Gap]) -> Unreadable:
     return Unreadable(f"Markers are hidden for too long to be filled in: {detail}", places=places)
 
 
-def gap_cautions(markers: Markers, filled: int, hidden: Sequence[int]) -> tuple[Caution, ...]:
+def gap_cautions(markers: Markers, stretch: slice, positions: FloatArray) -> tuple[Caution, ...]:
     """Cautions about gaps that were filled, and about markers that are left out for long gaps.
 
-    filled: the number of filled frames, summed over markers. hidden: the markers that are left out.
+    stretch: the frames that are read. positions: (frames of the stretch, markers, 3), NaN in gaps
+    that were not filled.
     """
+    is_hidden = hidden(positions)
+    filled: BoolArray = hidden(markers.positions[stretch]) & ~is_hidden
     cautions: tuple[Caution, ...] = ()
-    if filled:
-        share = 100 * filled / (len(markers.labels) * len(markers.positions))
-        detail = f"markers hidden for short times were filled in: {share:.1f} % of their frames"
-        cautions += (Caution("gaps_filled", detail),)
-    if hidden:
-        names = [markers.labels[marker] for marker in hidden]
+    if gap := longest_gap(filled):
+        label, first = markers.labels[gap.marker], markers.first_frame + stretch.start
+        detail = f"markers hidden for short times were filled in: {100 * filled.mean():.1f} % of"
+        detail += f" their frames; longest {label}, frames {first + gap.start} to"
+        detail += f" {first + gap.end - 1}"
+        cautions += (Caution("gaps_filled", detail, frames=gap.frames, joint=label),)
+    if gap := longest_gap(is_hidden):
+        names = [markers.labels[marker] for marker in np.flatnonzero(is_hidden.any(axis=0))]
         detail = f"markers hidden for long times are left out: {_listed(names)}"
-        cautions += (Caution("markers_left_out", detail),)
+        label = markers.labels[gap.marker]
+        cautions += (Caution("markers_left_out", detail, frames=gap.frames, joint=label),)
     return cautions
 
 

@@ -9,7 +9,14 @@ import numpy as np
 
 from app.errors import Unreadable
 from app.kinedex_error import Place
-from app.motion.skeleton.occlusion import Gap, fill_gaps, runs, without_sentinels
+from app.motion.skeleton.occlusion import (
+    Gap,
+    fill_gaps,
+    hidden,
+    longest_gap,
+    runs,
+    without_sentinels,
+)
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import BoolArray, FloatArray
 
@@ -45,13 +52,10 @@ def without_gaps(positions: FloatArray, names: Sequence[str] | None, rate: float
         return Whole(positions)
     rate = rate or RATE_FOR_GAPS
     filled = fill_gaps(positions, rate)
-    cautions: tuple[Caution, ...] = ()
-    if filled.frames:
-        share = 100 * filled.frames / (positions.shape[0] * positions.shape[1])
-        detail = f"joints hidden for short times were filled in: {share:.1f} % of their frames"
-        cautions = (Caution("gaps_filled", detail),)
     known: BoolArray = np.asarray(np.isfinite(filled.positions).all(axis=(1, 2)))
     start, end = max(runs(known), key=lambda run: run[1] - run[0], default=[0, 0])
+    was_hidden = hidden(positions[start:end])
+    cautions = _filled(was_hidden & ~hidden(filled.positions[start:end]), names, start)
     if end - start < len(known):
         if end - start < MIN_SECONDS * rate:
             raise _hidden_too_long(filled.long_gaps, names)
@@ -59,6 +63,20 @@ def without_gaps(positions: FloatArray, names: Sequence[str] | None, rate: float
         detail += f" which are {end - start} of {len(known)} frames"
         cautions += (Caution("frames_trimmed", detail),)
     return Whole(filled.positions[start:end].astype(np.float32), start, cautions)
+
+
+def _filled(filled: BoolArray, names: Sequence[str] | None, start: int) -> tuple[Caution, ...]:
+    """A caution with the longest gap that was filled.
+
+    filled: (frames, joints) whether it was filled; start: the frames of the array before them.
+    """
+    gap = longest_gap(filled)
+    if gap is None:
+        return ()
+    joint = names[gap.marker] if names else f"joint_{gap.marker}"
+    detail = f"joints hidden for short times were filled in: {100 * filled.mean():.1f} % of their"
+    detail += f" frames; longest {joint}, frames {start + gap.start} to {start + gap.end - 1}"
+    return (Caution("gaps_filled", detail, frames=gap.frames, joint=joint),)
 
 
 def _hidden_too_long(gaps: Sequence[Gap], names: Sequence[str] | None) -> Unreadable:

@@ -188,7 +188,8 @@ def _duplicates(names: list[str]) -> tuple[Caution, ...]:
     if not twice:
         return ()
     shown = ", ".join(twice[:5])
-    return (Caution("duplicate_names", f"several joints have the same name: {shown}"),)
+    detail = f"several joints have the same name: {shown}"
+    return (Caution("duplicate_names", detail, joint=twice[0]),)
 
 
 def _frame_rate(arrays: NamedArrays) -> float | None:

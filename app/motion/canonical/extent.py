@@ -134,4 +134,5 @@ def _other_joints_caution(limit: float, motion: Motion) -> tuple[Caution, ...]:
         f"frame {found.frame}, joint {motion.names[found.joint]}: {found.meters:.3g} m from the"
         " origin; it is not a part of the body that is analyzed"
     )
-    return (Caution("position_suspect", detail),)
+    place, joint = (found.frame, found.frame + 1), motion.names[found.joint]
+    return (Caution("position_suspect", detail, frames=place, joint=joint),)

@@ -87,6 +87,7 @@ def _unequal_limbs(motion: Motion, usual: Mapping[_Bone, float]) -> Iterator[Cau
                 "limbs_unequal",
                 f"{names[0]} to {names[1]} has {left:.2f} m, but {names[2]} to {names[3]} has"
                 f" {right:.2f} m",
+                joint=names[1] if left < right else names[3],
             )
 
 
@@ -103,11 +104,14 @@ def _length_jumps(
     wrong = (changes > allowed) & (medians > 0)
     for index in np.flatnonzero(wrong.any(axis=0)).tolist():
         names = [motion.names[motion.roles[role]] for role in list(usual)[index]]
-        worst = lengths[np.argmax(changes[:, index]), index]
+        frame = int(np.argmax(changes[:, index]))
+        worst = lengths[frame, index]
         yield Caution(
             "bone_length_jumps",
             f"{names[0]} to {names[1]} has {medians[index]:.2f} m, but {worst:.2f} m in"
             f" {_frames(wrong[:, index])}",
+            frames=next((start, end) for start, end in runs(wrong[:, index]) if frame < end),
+            joint=names[1],
         )
 
 
@@ -137,7 +141,8 @@ def _frozen_markers(motion: Motion) -> Iterator[Caution]:
                     f"{motion.names[joint]} does not move in frames {start} to {end}, while the"
                     f" hips travel {travel:.1f} m"
                 )
-                yield Caution("marker_frozen", detail)
+                place = (start, end + 1)
+                yield Caution("marker_frozen", detail, frames=place, joint=motion.names[joint])
                 break
 
 

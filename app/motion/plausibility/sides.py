@@ -45,7 +45,7 @@ def side_doubts(motion: Motion, positions: FloatArray) -> Iterator[Caution]:
             f"chest and hips face opposite ways; {names[0]} and {names[1]}, or the legs, may be"
             " exchanged"
         )
-        yield Caution("sides_suspect", detail)
+        yield Caution("sides_suspect", detail, joint=names[0])
     elif _forward_share(sampled, np.cross(hips, up)) < MAX_OPPOSITE:
         detail = "the knees and feet point backward; left and right may be exchanged"
         yield Caution("sides_suspect", detail)

@@ -44,7 +44,7 @@ def roles_of_one_body(
         f"left out: {others}"
     )
     roles = _roles_in(ours, names, parents, positions) | dict(given)
-    return roles, (Caution("several_people", detail),)
+    return roles, (Caution("several_people", detail, joint=names[int(ours[0])]),)
 
 
 def _bodies(names: Sequence[str], parents: IntArray, positions: FloatArray) -> list[IntArray]:

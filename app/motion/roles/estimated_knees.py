@@ -38,10 +38,10 @@ def with_missing_knees(
     tracks = {knee: _knee(recording.positions, found, knee) for knee in missing}
     recording, made = with_joints(recording, tracks, "estimated")
     roles = dict(found) | made
-    names = ", ".join(recording.skeleton.names[joint] for joint in made.values())
-    detail = f"knees were estimated from hip joints, ankles and toes: {names}"
+    names = [recording.skeleton.names[joint] for joint in made.values()]
+    detail = f"knees were estimated from hip joints, ankles and toes: {', '.join(names)}"
     ordered = {role: roles[role] for role in JointRole if role in roles}
-    return recording, ordered, (Caution("knees_estimated", detail),)
+    return recording, ordered, (Caution("knees_estimated", detail, joint=names[0]),)
 
 
 def _part(knee: JointRole, part: str) -> str:

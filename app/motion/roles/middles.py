@@ -58,7 +58,8 @@ def with_missing_middles(
     recording, more = _with_middles(recording, pairs)
     roles = dict(found) | more
     ordered = {role: roles[role] for role in JointRole if role in roles}
-    return recording, ordered, (Caution("joints_made", detail),)
+    first = recording.skeleton.names[next(iter(more.values()))]
+    return recording, ordered, (Caution("joints_made", detail, joint=first),)
 
 
 def _ears(names: Sequence[str]) -> tuple[int, int] | None:

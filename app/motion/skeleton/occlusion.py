@@ -29,17 +29,21 @@ class Gap:
     start: int
     end: int
 
+    @property
+    def frames(self) -> tuple[int, int]:
+        """The first frame, and the one after the last."""
+        return self.start, self.end
+
 
 @dataclass(frozen=True, slots=True)
 class Filled:
     """Markers with filled gaps.
 
-    positions: (frames, markers, 3), NaN only in long gaps. frames: how many frames of markers
-    were filled. long_gaps: the gaps that were not filled, by marker and time.
+    positions: (frames, markers, 3), NaN only in long gaps. long_gaps: the gaps that were not
+    filled, by marker and time.
     """
 
     positions: FloatArray
-    frames: int
     long_gaps: tuple[Gap, ...]
 
 
@@ -49,11 +53,9 @@ def fill_gaps(positions: FloatArray, frame_rate: float) -> Filled:
     frame_rate: Hz. The input is not changed.
     """
     longest = max(1, round(MAX_GAP * frame_rate))
-    x, y, z = np.moveaxis(positions, -1, 0)
-    unseen: BoolArray = np.asarray(np.isnan(x + y + z))
+    unseen = hidden(positions)
     filled = positions.copy()
     long_gaps: list[Gap] = []
-    count = 0
     for marker in np.flatnonzero(unseen.any(axis=0)).tolist():
         short = unseen[:, marker].copy()
         for start, end in runs(short):
@@ -62,8 +64,23 @@ def fill_gaps(positions: FloatArray, frame_rate: float) -> Filled:
                 long_gaps.append(Gap(marker, start, end))
         if short.any() and not unseen[:, marker].all():
             filled[short, marker] = _interpolated(positions[:, marker], unseen[:, marker], short)
-            count += int(short.sum())
-    return Filled(filled, count, tuple(long_gaps))
+    return Filled(filled, tuple(long_gaps))
+
+
+def longest_gap(unseen: BoolArray) -> Gap | None:
+    """The longest run of true values in `unseen` (frames, markers); of several the first one."""
+    gaps = [
+        Gap(marker, start, end)
+        for marker in np.flatnonzero(unseen.any(axis=0)).tolist()
+        for start, end in runs(unseen[:, marker])
+    ]
+    return max(gaps, key=lambda gap: gap.end - gap.start, default=None)
+
+
+def hidden(positions: FloatArray) -> BoolArray:
+    """(frames, markers) whether a marker was not seen; positions: (frames, markers, 3)."""
+    x, y, z = np.moveaxis(positions, -1, 0)
+    return np.asarray(np.isnan(x + y + z))
 
 
 def without_sentinels(positions: FloatArray) -> FloatArray:

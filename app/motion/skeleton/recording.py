@@ -16,12 +16,16 @@ class Caution:
     """A doubt that does not prevent the use of a clip.
 
     code: for programs. detail: for people. likely: the value that is probably right, if there is
-    one (for example a frame rate in Hz).
+    one (for example a frame rate in Hz). frames: where the doubt is, or is worst, as the first
+    frame of the recording and the one after the last; None if it is about the whole. joint: the
+    name of the joint or marker that it is about, or of the first of several.
     """
 
     code: str
     detail: str
     likely: float | None = None
+    frames: tuple[int, int] | None = None
+    joint: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,6 +22,8 @@ from app.errors import (
     TooLarge,
 )
 from app.kinedex_error import MAX_MESSAGE, KinedexError, shortened
+from app.motion.motion import Motion
+from app.motion.skeleton.recording import Caution
 from app.services.children.child import ChildDied
 from app.services.library.analysis_pool import AnalysisRequest
 from app.services.library.keypose_frames import annotated_keypose_arrays
@@ -144,15 +146,22 @@ def facts(analysis: Analysis) -> ClipFacts:
         metres_per_unit=motion.metres_per_unit,
         roles={role.value: motion.names[joint] for role, joint in motion.roles.items()},
         missing_roles=tuple(role.value for role in motion.missing_roles),
-        warnings=tuple(
-            ClipWarning(c.code, shortened(c.detail, MAX_MESSAGE), c.likely)
-            for c in cautions[:MAX_WARNINGS]
-        ),
+        warnings=tuple(_warning(caution, motion) for caution in cautions[:MAX_WARNINGS]),
         analysis_version=ANALYSIS_VERSION,
         audio_offset=analysis.audio_offset,
         start_offset=motion.start_offset,
         **({} if analysis.measures is None else asdict(analysis.measures)),
     )
+
+
+def _warning(caution: Caution, motion: Motion) -> ClipWarning:
+    """The warning of a caution; its frames become times of the clip in seconds."""
+    start = end = None
+    if caution.frames is not None:
+        first, after = caution.frames
+        start, end = first / motion.frame_rate, (after - 1) / motion.frame_rate
+    detail = shortened(caution.detail, MAX_MESSAGE)
+    return ClipWarning(caution.code, detail, caution.likely, start, end, caution.joint)
 
 
 def _is_superseded(tx: Tx, clip: ClipRecord) -> bool:

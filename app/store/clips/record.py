@@ -43,12 +43,17 @@ REANALYSIS_OPEN = (Reanalysis.QUEUED, Reanalysis.PROCESSING)
 class ClipWarning:
     """A doubt about a clip.
 
-    code: for programs; detail: for people; likely: a more probable value of the doubtful number.
+    code: for programs; detail: for people; likely: a more probable value of the doubtful number;
+    start, end: the times of the first and the last doubtful frame, seconds of the clip; joint: the
+    doubtful joint, by its name in the file. They are None where the doubt has no such place.
     """
 
     code: str
     detail: str
     likely: float | None = None
+    start: float | None = None
+    end: float | None = None
+    joint: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -149,7 +149,7 @@ def test_a_bone_missing_in_a_frame_keeps_its_pose() -> None:
     repeated = [[*ARM_ROWS[1][:1], ARM_ROWS[0][1], *ARM_ROWS[1][2:]]]
     assert np.allclose(recording.positions[1:2], twin(ARM, repeated), atol=1e-5)
     (caution,) = recording.cautions
-    assert caution.code == "bones_missing"
+    assert (caution.code, caution.joint) == ("bones_missing", "upper")
     assert "upper" in caution.detail
 
 
@@ -180,6 +180,10 @@ def test_frames_are_sorted_and_short_gaps_are_filled() -> None:
     def frame(number: int) -> bytes:
         return f"{number}\nroot {number} 0 0 0 0 0\nupper 0 0 0\nlower 0 0\n".encode()
 
+    def places(*numbers: int) -> list[tuple[int, int] | None]:
+        recording = read_amc(b":DEGREES\n" + b"".join(map(frame, numbers)), SKELETON)
+        return [caution.frames for caution in recording.cautions]
+
     def roots(*numbers: int) -> tuple[list[float], list[str], float | None]:
         recording = read_amc(b":DEGREES\n" + b"".join(map(frame, numbers)), SKELETON)
         return recording.positions[:, 0, 0].tolist(), codes(recording), recording.assumed_frame_rate
@@ -189,6 +193,8 @@ def test_frames_are_sorted_and_short_gaps_are_filled() -> None:
     assert roots(3, 1, 2) == ([1, 2, 3], ["frames_out_of_order"], 120)
     assert roots(1, 2, 4, 5) == ([1, 2, 2, 4, 5], ["frames_missing"], 120)
     assert roots(9) == ([9], [], 120)
+    assert places(0, 3, 1, 2, 4) == [(1, 4)]
+    assert places(1, 2, 4, 5, 8, 9) == [(5, 7)]
     head = b":DEGREES\n"
     assert line_of(head + frame(1) + frame(2) + frame(2)) == "line 10"
     assert line_of(head + frame(1) + frame(2) + frame(999_999_999)) == "line 10"

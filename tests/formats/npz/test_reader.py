@@ -170,6 +170,9 @@ def test_joints_hidden_for_a_short_time_are_filled_in() -> None:
     arrays = ARRAYS | {"positions": positions}
     recording = read_recording(npz(**arrays))
     assert [c.code for c in recording.cautions] == ["gaps_filled"]
+    (caution,) = recording.cautions
+    assert (caution.frames, caution.joint) == ((7, 9), recording.skeleton.names[3])
+    assert "frames 7 to 8" in caution.detail
     assert np.abs(recording.positions - PERSON.positions).max() < 0.01
     assert np.isfinite(read_recording(npy(positions)).positions).all()
 

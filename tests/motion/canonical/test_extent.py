@@ -77,6 +77,7 @@ def test_a_far_joint_outside_the_body_only_gives_a_caution() -> None:
     motion = canonicalize(replace(plain, skeleton=skeleton, positions=positions))
     (doubt,) = [caution for caution in motion.cautions if caution.code == "position_suspect"]
     assert "frame 0, joint camera" in doubt.detail
+    assert (doubt.frames, doubt.joint) == ((0, 1), "camera")
     _check_arrays(analyze(motion).arrays)
 
 

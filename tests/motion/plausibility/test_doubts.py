@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalize
 from app.motion.roles.joint_roles import JointRole
-from app.motion.skeleton.recording import Recording
+from app.motion.skeleton.recording import Caution, Recording
 from app.numerics.arrays import FloatArray
 from tests.motion.plausibility.creatures import PEOPLE, without_rest
 from tests.people import CONVENTIONS, ROLES, person
@@ -24,10 +24,14 @@ PLAIN = person(NAMES, frames=60)
 CODES = ("limbs_unequal", "bone_length_jumps", "marker_frozen", "sides_suspect")
 
 
+def cautions(recording: Recording) -> dict[str, Caution]:
+    """The doubts about the body by their codes; of several with one code the last."""
+    return {c.code: c for c in canonicalize(recording).cautions if c.code in CODES}
+
+
 def doubts(recording: Recording) -> dict[str, str]:
     """The doubts about the body: the detail by the code."""
-    motion = canonicalize(recording)
-    return {c.code: c.detail for c in motion.cautions if c.code in CODES}
+    return {code: caution.detail for code, caution in cautions(recording).items()}
 
 
 def with_positions(positions: FloatArray) -> Recording:
@@ -79,10 +83,22 @@ def test_a_joint_that_jumps_away_is_named_with_its_frames(
 ) -> None:
     positions = PLAIN.positions.copy()
     positions[first : first + count, column(role)] = [4.0, 0.5, -3.0]
-    detail = doubts(with_positions(positions))["bone_length_jumps"]
+    doubt = cautions(with_positions(positions))["bone_length_jumps"]
+    detail = doubt.detail
+    assert doubt.frames == (first, first + count)
+    assert doubt.joint is not None
+    assert doubt.joint in detail
     assert NAMES[role] in detail
     where = f"frame {first}" if count == 1 else f"frames {first} to {first + count - 1}"
     assert where in detail
+
+
+def test_the_worst_of_several_jumps_is_the_place() -> None:
+    positions = PLAIN.positions.copy()
+    positions[5:8, column(R.HEAD)] += [0.9, 0.0, 0.0]
+    positions[30:32, column(R.HEAD)] += [3.0, 0.0, 0.0]
+    doubt = cautions(with_positions(positions))["bone_length_jumps"]
+    assert (doubt.frames, doubt.joint) == ((30, 32), NAMES[R.HEAD])
 
 
 def test_arms_that_are_exchanged_turn_the_chest_against_the_hips() -> None:
@@ -120,9 +136,9 @@ def with_marker(path: FloatArray) -> Recording:
 def test_a_marker_that_stays_behind_is_frozen() -> None:
     path = np.zeros((60, 3))
     path[:, 2] = np.minimum(np.arange(60), 40) / 30
-    detail = doubts(with_marker(path))["marker_frozen"]
-    assert "LFHD" in detail
-    assert "frames 40 to 59" in detail
+    doubt = cautions(with_marker(path))["marker_frozen"]
+    assert (doubt.frames, doubt.joint) == ((40, 60), "LFHD")
+    assert "LFHD does not move in frames 40 to 59" in doubt.detail
 
 
 def test_an_object_that_never_moves_is_no_frozen_marker() -> None:

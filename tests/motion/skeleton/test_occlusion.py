@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.motion.skeleton.occlusion import MAX_GAP, fill_gaps, runs
+from app.motion.skeleton.occlusion import MAX_GAP, Gap, fill_gaps, hidden, longest_gap, runs
 from app.numerics.arrays import FloatArray
 
 
@@ -24,7 +24,7 @@ def test_a_short_gap_is_filled_near_the_truth(length: int) -> None:
     holed[80 : 80 + length] = np.nan
     filled = fill_gaps(holed, 100.0)
     assert np.abs(filled.positions - truth).max() < 2.0
-    assert (filled.frames, filled.long_gaps) == (length, ())
+    assert filled.long_gaps == ()
 
 
 def test_a_long_gap_is_reported_and_not_filled() -> None:
@@ -36,7 +36,6 @@ def test_a_long_gap_is_reported_and_not_filled() -> None:
     assert (gap.marker, gap.start, gap.end) == (0, 80, 106)
     assert np.isnan(filled.positions[80:106]).all()
     assert np.allclose(filled.positions[:3], holed[3])
-    assert filled.frames == 3
 
 
 @pytest.mark.parametrize("rate", [10.0, 50.0, 240.0])
@@ -62,7 +61,6 @@ def test_seen_positions_do_not_change_and_filled_ones_are_finite(
     left = [gap.end - gap.start for gap in filled.long_gaps]
     if not all(flags):
         assert np.isnan(filled.positions[:, 0, 0]).sum() == sum(left)
-        assert filled.frames == sum(flags) - sum(left)
 
 
 @given(st.lists(st.booleans(), max_size=40))
@@ -74,3 +72,27 @@ def test_runs_agree_with_the_slow_twin(flags: list[bool]) -> None:
         elif flag:
             slow.append([index, index + 1])
     assert runs(np.array(flags, dtype=bool)) == slow
+
+
+def gap_by_looking(unseen: list[list[bool]]) -> Gap | None:
+    """A slow twin of `longest_gap`: it tries every marker and every pair of frames."""
+    found: Gap | None = None
+    for marker in range(len(unseen[0])):
+        for start in range(len(unseen)):
+            for end in range(start + 1, len(unseen) + 1):
+                is_gap = all(unseen[frame][marker] for frame in range(start, end))
+                if is_gap and (found is None or end - start > found.end - found.start):
+                    found = Gap(marker, start, end)
+    return found
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.lists(st.booleans(), min_size=3, max_size=3), min_size=1, max_size=12))
+def test_the_longest_gap_is_that_of_its_slow_twin(unseen: list[list[bool]]) -> None:
+    assert longest_gap(np.array(unseen)) == gap_by_looking(unseen)
+
+
+def test_a_marker_is_hidden_where_any_coordinate_is_missing() -> None:
+    holed = circle(4)
+    holed[1, 0, 2] = np.nan
+    assert hidden(holed)[:, 0].tolist() == [False, True, False, False]

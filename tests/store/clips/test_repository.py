@@ -9,13 +9,21 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sqlalchemy import update
 
 from app.errors import ClipNotFound
 from app.store.clips import arrays, labels
 from app.store.clips import repository as clips
 from app.store.clips import versions as library
 from app.store.clips.labels import CountBySource
-from app.store.clips.record import AddOutcome, AnalysisHints, AttachedAudio, ClipState
+from app.store.clips.record import (
+    AddOutcome,
+    AnalysisHints,
+    AttachedAudio,
+    ClipState,
+    ClipWarning,
+)
+from app.store.database import tables as t
 from app.store.store import Store
 from tests.store.conftest import AddClip, facts, new_clip
 from tests.store.stored_arrays import array_versions
@@ -181,3 +189,14 @@ def test_processes_that_add_the_same_content_make_one_clip(
         for number in range(10):
             assert clips.find_by_content(tx, new_clip(f"clip {number}").content_key)
         assert library.version(tx) == 0
+
+
+def test_warnings_from_before_they_had_places_are_read(store: Store, add_clip: AddClip) -> None:
+    clip_id = add_clip("old").id
+    old = [{"code": "gaps_filled", "detail": "Some.", "likely": None}]
+    with store.write() as tx:
+        tx.execute(update(t.clips).where(t.clips.c.id == clip_id).values(warnings=old))
+    with store.read() as tx:
+        (warning,) = clips.get(tx, clip_id).warnings
+    assert warning == ClipWarning("gaps_filled", "Some.")
+    assert (warning.start, warning.end, warning.joint) == (None, None, None)

@@ -13,11 +13,18 @@ class ClipWarning(Record):
     """A possible error in a clip that can still be used.
 
     likely: The value that is probably right, if any.
+    start: Seconds of the clip: the first doubtful frame, or the worst of several stretches;
+    null: the doubt is about the whole clip.
+    end: Seconds of the clip: the last doubtful frame.
+    joint: The doubtful joint or marker, or the first of them: its name in the file.
     """
 
     code: str
     detail: str
     likely: float | None
+    start: float | None
+    end: float | None
+    joint: str | None
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,6 +17,12 @@ import {
 } from "three";
 import { sideOf, type Side } from "$/motion/skeleton";
 import { poseAt, type PoseOptions, type Rig } from "./pose";
+import { anatomyOf, type Anatomy } from "./skin/anatomy";
+import { Eyes } from "./skin/eyes";
+import type { Frame } from "./skin/frames";
+import { FINE, meshOf, type BodyMesh } from "./skin/mesh";
+import { restOf } from "./skin/rest";
+import { Skin } from "./skin/skin";
 
 export type BodyColors = Readonly<Record<Side, string>>;
 
@@ -35,8 +41,17 @@ const UP = new Vector3(0, 1, 0);
 const cylinder = new CylinderGeometry(0.62, 1, 1, 8).translate(0, 0.5, 0);
 const sphere = new SphereGeometry(1, 12, 8);
 
+/** What shows one pose. */
+interface Shape {
+  readonly group: Group;
+  color(colors: BodyColors, tint?: readonly number[] | null): void;
+  /** Gives the pose that is shown. */
+  show(seconds: number, options: PoseOptions): Float32Array;
+  dispose(): void;
+}
+
 /** The bones and joints of one pose, as two meshes. */
-class Figure {
+class Figure implements Shape {
   readonly group = new Group();
   readonly #bones: InstancedMesh;
   readonly #joints: InstancedMesh;
@@ -107,6 +122,8 @@ class Figure {
 }
 
 export interface BodyOptions extends PoseOptions {
+  /** A body with a skin, where the skeleton is that of a person; else bones. */
+  readonly skin: boolean;
   readonly ghosts: boolean;
   readonly trails: boolean;
 }
@@ -117,14 +134,22 @@ export interface BodySource {
   readonly head: number;
   /** Indices of the joints that leave trails. */
   readonly ends: readonly number[];
+  /** Names of joints by role, as far as they are known. */
+  readonly roles: Readonly<Record<string, string>>;
 }
 
 export class Body {
   readonly group = new Group();
   /** (joints, 3) of the pose that is shown, in the body's own coordinates. */
   pose: Float32Array = new Float32Array();
-  readonly #figure: Figure;
-  #ghosts: readonly Figure[] = [];
+  /** Null where it is not the body of a person: then it is shown as bones only. */
+  readonly #anatomy: Anatomy | null;
+  #shape: Shape;
+  #isSkin = false;
+  /** Made once, when the body is first seen with its skin. */
+  #mesh: BodyMesh | null = null;
+  #eyes: Eyes | null = null;
+  #ghosts: readonly Shape[] = [];
   #trails: readonly { joint: number; line: Line }[] = [];
   #colors: BodyColors;
   #isTinted = false;
@@ -132,44 +157,82 @@ export class Body {
   constructor(
     readonly source: BodySource,
     colors: BodyColors,
+    /** How fine its skin is: FINE or COARSE. */
+    private readonly cells = FINE,
   ) {
-    const { rig, head } = source;
+    const { rig, roles } = source;
     const { positions } = rig.motion;
     this.#colors = colors;
-    this.#figure = new Figure(rig, head, 1);
-    this.#figure.color(colors);
-    this.group.add(this.#figure.group);
+    this.#anatomy = anatomyOf(rig.motion, roles);
+    this.#shape = this.#newShape(1);
     const [x = 0, , z = 0] = positions.subarray(rig.root * 3);
     this.group.position.set(-x, 0, -z);
   }
 
+  get isPerson(): boolean {
+    return this.#anatomy !== null;
+  }
+
   color(colors: BodyColors): void {
     this.#colors = colors;
-    for (const figure of [this.#figure, ...this.#ghosts]) figure.color(colors);
+    for (const shape of [this.#shape, ...this.#ghosts]) shape.color(colors);
     this.#clearTrails();
   }
 
+  /** tint: a color of each joint. A skin has no joints, so such a body is seen as its bones. */
   show(seconds: number, options: BodyOptions, tint: readonly number[] | null = null): void {
-    if (tint || this.#isTinted) this.#figure.color(this.#colors, tint);
+    this.#wear(options.skin && tint === null && this.#anatomy !== null);
+    if (tint || this.#isTinted) this.#shape.color(this.#colors, tint);
     this.#isTinted = tint !== null;
-    this.pose = this.#figure.show(seconds, options);
+    this.pose = this.#shape.show(seconds, options);
     this.#showGhosts(seconds, options);
     this.#showTrails(seconds, options);
   }
 
+  /** What the person sees in the pose that is shown, in the body's own coordinates; null where it
+      is not known which joints are those of a person. */
+  get eyes(): Frame | null {
+    if (!this.#anatomy) return null;
+    this.#eyes ??= new Eyes(this.#anatomy, restOf(this.source.rig.motion, this.#anatomy));
+    return this.#eyes.in(this.pose);
+  }
+
   dispose(): void {
-    for (const figure of [this.#figure, ...this.#ghosts]) figure.dispose();
+    this.#remove([this.#shape, ...this.#ghosts]);
     this.#clearTrails();
+  }
+
+  #wear(isSkin: boolean): void {
+    if (isSkin === this.#isSkin) return;
+    this.#isSkin = isSkin;
+    this.#remove([this.#shape, ...this.#ghosts]);
+    this.#ghosts = [];
+    this.#shape = this.#newShape(1);
+  }
+
+  #newShape(opacity: number): Shape {
+    const { rig, head } = this.source;
+    const anatomy = this.#isSkin ? this.#anatomy : null;
+    if (anatomy) this.#mesh ??= meshOf(rig.motion, anatomy, this.cells);
+    const shape =
+      anatomy && this.#mesh
+        ? new Skin(rig, anatomy, this.#mesh, opacity)
+        : new Figure(rig, head, opacity);
+    shape.color(this.#colors);
+    this.group.add(shape.group);
+    return shape;
+  }
+
+  #remove(shapes: readonly Shape[]): void {
+    for (const shape of shapes) {
+      shape.group.removeFromParent();
+      shape.dispose();
+    }
   }
 
   #showGhosts(seconds: number, options: BodyOptions): void {
     if (options.ghosts && this.#ghosts.length === 0) {
-      const { rig, head } = this.source;
-      this.#ghosts = GHOSTS.map(({ opacity }) => new Figure(rig, head, opacity));
-      for (const ghost of this.#ghosts) {
-        ghost.color(this.#colors);
-        this.group.add(ghost.group);
-      }
+      this.#ghosts = GHOSTS.map(({ opacity }) => this.#newShape(opacity));
     }
     this.#ghosts.forEach((ghost, place) => {
       const at = seconds + (GHOSTS[place]?.seconds ?? 0);

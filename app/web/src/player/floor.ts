@@ -10,6 +10,8 @@ import {
 const METERS_APART = 0.5;
 /** Lines from the middle to each edge. */
 const LINES = 24;
+/** How many lines a piece crosses. */
+const PIECE = 2;
 
 export class Floor {
   readonly lines: LineSegments<BufferGeometry, LineBasicMaterial>;
@@ -25,11 +27,14 @@ export class Floor {
       distances.push(Math.min(1, Math.hypot(x, z) / LINES));
     };
     for (let line = -LINES; line <= LINES; line += 1) {
-      for (let piece = -LINES; piece < LINES; piece += 1) {
+      for (let piece = -LINES; piece < LINES; piece += PIECE) {
+        const nearest = Math.min(Math.abs(piece), Math.abs(piece + PIECE));
+        // What is farther has faded.
+        if (Math.hypot(line, nearest) >= LINES) continue;
         add(line, piece);
-        add(line, piece + 1);
+        add(line, piece + PIECE);
         add(piece, line);
-        add(piece + 1, line);
+        add(piece + PIECE, line);
       }
     }
     const geometry = new BufferGeometry();

@@ -49,6 +49,34 @@ export async function marksOf(clipId: string, signal: AbortSignal): Promise<Mark
   };
 }
 
+/** The name of a span, and where it is written. */
+export interface Name {
+  readonly text: string;
+  /** Pixels: where it begins, or, in the second half, where it ends, so that it is not cut. */
+  readonly x: number;
+  readonly anchor: "start" | "end";
+}
+
+/** Pixels of a letter in the names of spans, about. */
+const LETTER = 6.5;
+
+/** The names that have room on a line `width` pixels wide; `x`: pixels at a time in seconds. */
+export function namesOf(
+  spans: readonly Span[],
+  x: (seconds: number) => number,
+  width: number,
+): readonly Name[] {
+  const taken: [number, number][] = [];
+  return spans.flatMap(({ start, label }) => {
+    const isLate = x(start) > width / 2;
+    const long = LETTER * label.length;
+    const [from, to] = isLate ? [x(start) - long, x(start)] : [x(start), x(start) + long];
+    if (from < 0 || to > width || taken.some(([a, b]) => from < b && to > a)) return [];
+    taken.push([from, to]);
+    return [{ text: label, x: x(start), anchor: isLate ? ("end" as const) : ("start" as const) }];
+  });
+}
+
 /** A curve as the path of an SVG of the given size; at most one point a pixel. */
 export function curvePath(values: readonly number[], width: number, height: number): string {
   if (values.length < 2 || width <= 0) return "";

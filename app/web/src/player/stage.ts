@@ -2,9 +2,11 @@
 import {
   Color,
   DirectionalLight,
+  Euler,
   HemisphereLight,
   MathUtils,
   PerspectiveCamera,
+  Quaternion,
   Scene,
   Spherical,
   Vector3,
@@ -13,6 +15,7 @@ import {
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Floor } from "./floor";
 import { Body, type BodyColors, type BodyOptions, type BodySource } from "./body";
+import { COARSE, FINE } from "./skin/mesh";
 import { HOME, type Camera } from "./view";
 
 export interface StageColors {
@@ -27,6 +30,8 @@ export interface Shown extends BodyOptions {
   /** Of each body the colors of its joints, 0xrrggbb; without, those of its sides. */
   readonly tints?: readonly (readonly number[] | null)[];
   readonly follow: boolean;
+  /** The first person's own view. */
+  readonly eyes: boolean;
 }
 
 /** A point of a body, in pixels of the canvas. */
@@ -46,10 +51,24 @@ export interface StageEvents {
 /** Software draws each pixel by itself: more of them than this cost frames. */
 const MAX_PIXEL_RATIO = 1.5;
 const HIP_HEIGHT = 0.9;
+/** What the camera turns around at first. */
+const START = new Vector3(0, HIP_HEIGHT, 0);
 const FIELD_DEGREES = 40;
+/** The field of the first person's view: eyes see more than a camera that shows a body. */
+const EYES_DEGREES = 85;
+/** How far below straight ahead they look: hands are seen then. */
+const DOWN_DEGREES = 18;
+/** Where a point behind the camera is said to be: outside of every canvas. */
+const UNSEEN = -1e4;
+/** From the turn of a head, which looks along z, to that of a camera, which looks along -z. */
+const LOOK = new Quaternion().setFromEuler(
+  new Euler(-MathUtils.degToRad(DOWN_DEGREES), Math.PI, 0, "YXZ"),
+);
 /** Meters between bodies side by side, and beside the outer ones. */
 const APART = 1.4;
 const ROOM = 1.5;
+/** More bodies than this have coarser skins: each is smaller, and software draws them in time. */
+const MAX_FINE = 2;
 /** Meters over a head. */
 const OVER_HEAD = 0.22;
 
@@ -57,6 +76,7 @@ export class Stage {
   readonly #renderer: WebGLRenderer;
   readonly #scene = new Scene();
   readonly #camera = new PerspectiveCamera(FIELD_DEGREES, 1, 0.05, 100);
+  readonly #eyes = new PerspectiveCamera(EYES_DEGREES, 1, 0.02, 100);
   readonly #controls: OrbitControls;
   readonly #told: StageEvents;
   readonly #floor = new Floor();
@@ -64,6 +84,11 @@ export class Stage {
   #colors: StageColors;
   #apart = APART;
   #request = 0;
+  #isFirstPerson = false;
+  /** What the camera turns around, but for a shift. */
+  readonly #base = START.clone();
+  /** Whether it followed the bodies before; null at first. */
+  #isFollowing: boolean | null = null;
 
   /** Throws without WebGL. */
   constructor(canvas: HTMLCanvasElement, colors: StageColors, told: StageEvents) {
@@ -75,7 +100,7 @@ export class Stage {
     sun.position.set(2, 5, 3);
     this.#scene.add(new HemisphereLight(0xffffff, 0xb8b2a6, 2), sun, this.#floor.lines);
     this.#controls = new OrbitControls(this.#camera, canvas);
-    this.#controls.target.set(0, HIP_HEIGHT, 0);
+    this.#controls.target.copy(START);
     this.#controls.minDistance = 0.5;
     this.#controls.maxDistance = 40;
     this.#controls.addEventListener("change", () => this.draw());
@@ -88,15 +113,17 @@ export class Stage {
       this.#camera.position.clone().sub(this.#controls.target),
     );
     const [azimuth, polar] = [MathUtils.radToDeg(theta), MathUtils.radToDeg(phi)];
-    return { azimuth, polar, distance: radius };
+    const [x, y, z] = this.#controls.target.clone().sub(this.#base).toArray();
+    return { azimuth, polar, distance: radius, shift: [x, y, z] };
   }
 
-  set camera({ azimuth, polar, distance }: Camera) {
+  set camera({ azimuth, polar, distance, shift }: Camera) {
     const from = new Vector3().setFromSphericalCoords(
       distance,
       MathUtils.degToRad(polar),
       MathUtils.degToRad(azimuth),
     );
+    this.#controls.target.copy(this.#base).add(new Vector3(...shift));
     this.#camera.position.copy(this.#controls.target).add(from);
     this.#controls.update();
     this.draw();
@@ -124,7 +151,8 @@ export class Stage {
       body.group.removeFromParent();
       body.dispose();
     }
-    this.#bodies = sources.map((source, place) => new Body(source, this.#colorsOf(place)));
+    const cells = sources.length > MAX_FINE ? COARSE : FINE;
+    this.#bodies = sources.map((source, place) => new Body(source, this.#colorsOf(place), cells));
     const angle = MathUtils.degToRad(HOME.azimuth);
     this.#bodies.forEach(({ group }, place) => {
       const beside = apart * (place - (this.#bodies.length - 1) / 2);
@@ -132,20 +160,31 @@ export class Stage {
       group.position.z -= beside * Math.sin(angle);
       this.#scene.add(group);
     });
-    this.#controls.target.set(0, HIP_HEIGHT, 0);
+    this.#base.copy(START);
+    this.#controls.target.copy(START);
+    this.#isFollowing = null;
   }
 
-  show({ times, tints, follow, ...options }: Shown): void {
+  /** Whether a skeleton is known to be that of a person, which can have a skin. */
+  get hasPerson(): boolean {
+    return this.#bodies.some((body) => body.isPerson);
+  }
+
+  show({ times, tints, follow, eyes, ...options }: Shown): void {
     this.#bodies.forEach((body, place) => body.show(times[place] ?? 0, options, tints?.[place]));
-    if (follow) this.#follow();
+    this.#follow(follow);
+    this.#isFirstPerson = eyes && this.#look();
+    this.#controls.enabled = !this.#isFirstPerson;
     this.draw();
   }
 
   resize(width: number, height: number): void {
     if (width === 0 || height === 0) return;
     this.#renderer.setSize(width, height, false);
-    this.#camera.aspect = width / height;
-    this.#camera.updateProjectionMatrix();
+    for (const camera of [this.#camera, this.#eyes]) {
+      camera.aspect = width / height;
+      camera.updateProjectionMatrix();
+    }
     this.draw();
   }
 
@@ -167,7 +206,8 @@ export class Stage {
     const point = new Vector3();
     const { group, pose } = this.#bodies[body] ?? {};
     if (group && pose) group.localToWorld(point.fromArray(pose, joint * 3));
-    point.setY(point.y + above).project(this.#camera);
+    point.setY(point.y + above).project(this.#seeing);
+    if (point.z > 1) return { name, x: UNSEEN, y: UNSEEN };
     return { name, x: ((point.x + 1) / 2) * width, y: ((1 - point.y) / 2) * height };
   }
 
@@ -175,7 +215,7 @@ export class Stage {
   draw(): void {
     this.#request ||= requestAnimationFrame(() => {
       this.#request = 0;
-      this.#renderer.render(this.#scene, this.#camera);
+      this.#renderer.render(this.#scene, this.#seeing);
       this.#told.ondraw();
     });
   }
@@ -195,17 +235,43 @@ export class Stage {
     return colors;
   }
 
-  /** Go with the middle of the bodies over the floor. */
-  #follow(): void {
+  get #seeing(): PerspectiveCamera {
+    return this.#isFirstPerson ? this.#eyes : this.#camera;
+  }
+
+  /** Look out of the eyes of the first person; whether there is one. */
+  #look(): boolean {
+    const body = this.#bodies.find(({ isPerson }) => isPerson);
+    const eyes = body?.eyes;
+    if (!body || !eyes) return false;
+    this.#eyes.position.copy(eyes.place).add(body.group.position);
+    this.#eyes.quaternion.copy(eyes.turn).multiply(LOOK);
+    return true;
+  }
+
+  /** Go with the middle of the bodies over the floor, or stay. */
+  #follow(follows: boolean): void {
+    const { target } = this.#controls;
+    const stood = this.#isFollowing === false ? target.clone().setY(HIP_HEIGHT) : this.#base;
+    const next = follows ? this.#middle() : START;
+    if (follows) {
+      const gone = next.clone().sub(stood);
+      target.add(gone);
+      this.#camera.position.add(gone);
+      this.#controls.update();
+    }
+    this.#base.copy(next);
+    const hasStopped = this.#isFollowing === true && !follows;
+    this.#isFollowing = follows;
+    if (hasStopped) this.#told.onmove(this.camera);
+  }
+
+  #middle(): Vector3 {
     const middle = new Vector3();
     const hips = new Vector3();
-    for (const body of this.#bodies) {
-      middle.add(hips.fromArray(body.pose, body.source.rig.root * 3).add(body.group.position));
+    for (const { pose, source, group } of this.#bodies) {
+      middle.add(hips.fromArray(pose, source.rig.root * 3).add(group.position));
     }
-    middle.divideScalar(Math.max(1, this.#bodies.length)).setY(this.#controls.target.y);
-    const gone = middle.sub(this.#controls.target);
-    this.#controls.target.add(gone);
-    this.#camera.position.add(gone);
-    this.#controls.update();
+    return middle.divideScalar(Math.max(1, this.#bodies.length)).setY(HIP_HEIGHT);
   }
 }

@@ -1,15 +1,21 @@
 import { describe, expect, it } from "vitest";
-import { HOME, readCamera, within, writeCamera } from "./view";
+import { HOME, readCamera, within, writeCamera, type Camera } from "./view";
 
 describe("the camera in an address", () => {
   it("is read as it was written", () => {
-    const camera = { azimuth: -120, polar: 60, distance: 3.25 };
+    const camera: Camera = { azimuth: -120, polar: 60, distance: 3.25, shift: [0, 0, 0] };
+    expect(writeCamera(camera)).toBe("-120,60,3.25");
     expect(readCamera(writeCamera(camera))).toEqual(camera);
+    const shifted: Camera = { ...camera, shift: [0.25, -1, 0] };
+    expect(readCamera(writeCamera(shifted))).toEqual(shifted);
   });
 
-  it.each(["", "a,b,c", "10,20", "10,20,-1", "10,300,2"])("%o is the usual one", (text) => {
-    expect(readCamera(text)).toEqual(HOME);
-  });
+  it.each(["", "a,b,c", "10,20", "10,20,-1", "10,300,2", "1,2,3,x"])(
+    "%o is the usual one",
+    (text) => {
+      expect(readCamera(text)).toEqual(HOME);
+    },
+  );
 });
 
 describe("the time that is played", () => {
