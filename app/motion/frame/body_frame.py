@@ -14,9 +14,11 @@ import numpy as np
 
 from app.errors import NotHuman, TooShort
 from app.kinedex_error import Place
+from app.motion.frame.posed_start import with_held_start
 from app.motion.motion import Motion
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.skeleton.resampling import resample
+from app.motion.skeleton.smoothing import cut_off_of, low_passed
 from app.numerics.arrays import BoolArray, FloatArray
 
 ANALYSIS_RATE = 30.0
@@ -98,12 +100,16 @@ class BodyTrack:
 
 
 def body_track(motion: Motion) -> BodyTrack:
-    """The track of the body in `motion`, resampled to ANALYSIS_RATE.
+    """The track of the body in `motion`, smoothed, then resampled to ANALYSIS_RATE.
 
-    Raises TooShort for fewer than MIN_FRAMES frames at that rate, and NotHuman for a body without
-    size.
+    A pose at the start that does not belong to the motion is replaced by the first pose of the
+    motion (app.motion.frame.posed_start). Raises TooShort for fewer than MIN_FRAMES frames at that
+    rate, and NotHuman for a body without size.
     """
-    positions = _at_analysis_rate(motion.role_positions(), motion.frame_rate)
+    motion = with_held_start(motion)
+    measured = motion.role_positions().astype(np.float64)
+    cut_off = cut_off_of(measured, motion.frame_rate)
+    positions = _at_analysis_rate(measured, motion.frame_rate, cut_off)
     if len(positions) < MIN_FRAMES:
         seconds = MIN_FRAMES / ANALYSIS_RATE
         message = f"expected at least {seconds:.2f} s, found {motion.duration:.3f} s"
@@ -112,7 +118,7 @@ def body_track(motion: Motion) -> BodyTrack:
             places=[Place("frames", message)],
         )
     length = body_length(motion)
-    heading = _heading(_left_axis(motion), len(positions))
+    heading = _heading(_left_axis(motion, cut_off), len(positions))
     origin = positions[:, SUN_ROLES.index(JointRole.HIPS)]
     local = turned(positions - origin[:, None], -heading) / length
     return BodyTrack(positions, local, origin, heading, length)
@@ -142,8 +148,9 @@ def turned(points: FloatArray, angles: FloatArray) -> FloatArray:
     return np.stack([cos * x + sin * z, y, cos * z - sin * x], axis=-1)
 
 
-def _at_analysis_rate(positions: FloatArray, rate: float) -> FloatArray:
-    return resample(positions.astype(np.float64), rate, ANALYSIS_RATE)
+def _at_analysis_rate(positions: FloatArray, rate: float, cut_off: float) -> FloatArray:
+    smooth = low_passed(positions.astype(np.float64), rate, cut_off)
+    return resample(smooth, rate, ANALYSIS_RATE)
 
 
 def _distances(motion: Motion, pairs: Sequence[tuple[JointRole, JointRole]]) -> list[float | None]:
@@ -157,7 +164,7 @@ def _distances(motion: Motion, pairs: Sequence[tuple[JointRole, JointRole]]) -> 
     return [by_pair.get(pair) for pair in pairs]
 
 
-def _left_axis(motion: Motion) -> FloatArray | None:
+def _left_axis(motion: Motion, cut_off: float) -> FloatArray | None:
     """(n, 3) the line from right to left, in meters, at ANALYSIS_RATE.
 
     It is that of the first pair of joints whose line is level enough in some frame. None if there
@@ -167,7 +174,7 @@ def _left_axis(motion: Motion) -> FloatArray | None:
         if left not in motion.roles or right not in motion.roles:
             continue
         ends = motion.positions[:, [motion.roles[left], motion.roles[right]]]
-        line = _at_analysis_rate(ends[:, 0] - ends[:, 1], motion.frame_rate)
+        line = _at_analysis_rate(ends[:, 0] - ends[:, 1], motion.frame_rate, cut_off)
         if _gives_heading(line).any():
             return line
     return None
