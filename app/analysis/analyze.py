@@ -41,7 +41,7 @@ from app.analysis.segments.keypose_arrays import keypose_arrays
 from app.analysis.stage_times import StageTimes
 from app.analysis.symbols.channels import symbol_features, symbol_statistics
 from app.analysis.symbols.symbol import describe_symbol
-from app.motion.frame.body_frame import BodyTrack, body_track
+from app.motion.frame.body_frame import BodyTrack, body_track, smooth_track
 from app.motion.frame.gait import exact_gait_cycles
 from app.motion.motion import Motion
 from app.motion.skeleton.recording import Caution
@@ -86,7 +86,7 @@ def analyze(
     times = times or StageTimes()
     with times.stage("describe"):
         track = body_track(motion)
-        parts = _Parts(track)
+        parts = _Parts(smooth_track(motion))
         arrays: dict[str, NDArray[Any]] = {**_for_search(parts)}
     with times.stage("symbol"):
         arrays |= describe_symbol(parts.channels)
@@ -112,7 +112,7 @@ def describe_for_search(motion: Motion, names: Collection[str] | None = None) ->
     as from `analyze`. Raises KeyError for a name that only `analyze` computes, and TooShort or
     NotHuman.
     """
-    return Analysis(motion, {**_for_search(_Parts(body_track(motion)), names)})
+    return Analysis(motion, {**_for_search(_Parts(smooth_track(motion)), names)})
 
 
 class _Parts:

@@ -13,7 +13,7 @@ import numpy as np
 
 from app.analysis.descriptors.active_part import active_part
 from app.analysis.descriptors.motion_volume import cross_correlations, decompose, warping_distances
-from app.motion.frame.body_frame import body_track
+from app.motion.frame.body_frame import smooth_track
 from app.numerics.tensors.rank1 import Rank1
 from app.search.example.by_example import rank_by_example
 from app.search.example.distances import ACTIVE, EPSILON, FEATURES, RHO, Descriptors
@@ -66,7 +66,7 @@ class Volumes:
         """Compute the factors from the stored motions; `step` is called after each clip."""
         factors = {}
         for clip in chosen:
-            track = active_part(body_track(load_motion(lib, clip)))
+            track = active_part(smooth_track(load_motion(lib, clip)))
             factors[clip.id] = decompose(track, q=q, threshold=threshold)
             step()
         return cls(factors)

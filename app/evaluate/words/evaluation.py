@@ -15,7 +15,7 @@ from app.models.words.correlated_space import fit_correlated_space
 from app.models.words.query import understand
 from app.models.words.symbol_space import fit_symbol_space
 from app.models.words.vocabulary import WordVocabulary
-from app.motion.frame.body_frame import body_track
+from app.motion.frame.body_frame import smooth_track
 from app.numerics.arrays import FloatArray
 from app.services import fields
 from app.services.library.library import Library
@@ -56,7 +56,7 @@ def judge_words(lib: Library, filter: ClipFilter | None = None) -> WordEvaluatio
     training = read_training_set(lib.store, ready_only(filter))
 
     def channels(row: int) -> FloatArray:
-        return symbol_features(active_part(body_track(load_motion(lib, training.clips[row]))))
+        return symbol_features(active_part(smooth_track(load_motion(lib, training.clips[row]))))
 
     return held_out_word_figures(
         training.symbols,

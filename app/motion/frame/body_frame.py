@@ -100,16 +100,27 @@ class BodyTrack:
 
 
 def body_track(motion: Motion) -> BodyTrack:
-    """The track of the body in `motion`, smoothed, then resampled to ANALYSIS_RATE.
+    """The track of the body in `motion`, resampled to ANALYSIS_RATE.
 
     A pose at the start that does not belong to the motion is replaced by the first pose of the
     motion (app.motion.frame.posed_start). Raises TooShort for fewer than MIN_FRAMES frames at that
     rate, and NotHuman for a body without size.
     """
-    motion = with_held_start(motion)
-    measured = motion.role_positions().astype(np.float64)
-    cut_off = cut_off_of(measured, motion.frame_rate)
-    positions = _at_analysis_rate(measured, motion.frame_rate, cut_off)
+    return _track(with_held_start(motion), is_smooth=False)
+
+
+def smooth_track(motion: Motion) -> BodyTrack:
+    """As `body_track`, of smoothed positions (app.motion.skeleton.smoothing).
+
+    Descriptors are computed from it. Energies are not: they have a model of the noise that needs
+    to see it. The filter runs at ANALYSIS_RATE, so that a motion is the same at any frame rate.
+    """
+    return _track(with_held_start(motion), is_smooth=True)
+
+
+def _track(motion: Motion, *, is_smooth: bool) -> BodyTrack:
+    positions = _at_analysis_rate(motion.role_positions(), motion.frame_rate)
+    left = _left_axis(motion)
     if len(positions) < MIN_FRAMES:
         seconds = MIN_FRAMES / ANALYSIS_RATE
         message = f"expected at least {seconds:.2f} s, found {motion.duration:.3f} s"
@@ -117,8 +128,12 @@ def body_track(motion: Motion) -> BodyTrack:
             f"The motion has {motion.frames} frames; {seconds:.2f} s are needed.",
             places=[Place("frames", message)],
         )
+    if is_smooth:
+        cut_off = cut_off_of(positions, ANALYSIS_RATE)
+        positions = low_passed(positions, ANALYSIS_RATE, cut_off)
+        left = None if left is None else low_passed(left, ANALYSIS_RATE, cut_off)
     length = body_length(motion)
-    heading = _heading(_left_axis(motion, cut_off), len(positions))
+    heading = _heading(left, len(positions))
     origin = positions[:, SUN_ROLES.index(JointRole.HIPS)]
     local = turned(positions - origin[:, None], -heading) / length
     return BodyTrack(positions, local, origin, heading, length)
@@ -148,9 +163,8 @@ def turned(points: FloatArray, angles: FloatArray) -> FloatArray:
     return np.stack([cos * x + sin * z, y, cos * z - sin * x], axis=-1)
 
 
-def _at_analysis_rate(positions: FloatArray, rate: float, cut_off: float) -> FloatArray:
-    smooth = low_passed(positions.astype(np.float64), rate, cut_off)
-    return resample(smooth, rate, ANALYSIS_RATE)
+def _at_analysis_rate(positions: FloatArray, rate: float) -> FloatArray:
+    return resample(positions.astype(np.float64), rate, ANALYSIS_RATE)
 
 
 def _distances(motion: Motion, pairs: Sequence[tuple[JointRole, JointRole]]) -> list[float | None]:
@@ -164,7 +178,7 @@ def _distances(motion: Motion, pairs: Sequence[tuple[JointRole, JointRole]]) -> 
     return [by_pair.get(pair) for pair in pairs]
 
 
-def _left_axis(motion: Motion, cut_off: float) -> FloatArray | None:
+def _left_axis(motion: Motion) -> FloatArray | None:
     """(n, 3) the line from right to left, in meters, at ANALYSIS_RATE.
 
     It is that of the first pair of joints whose line is level enough in some frame. None if there
@@ -174,7 +188,7 @@ def _left_axis(motion: Motion, cut_off: float) -> FloatArray | None:
         if left not in motion.roles or right not in motion.roles:
             continue
         ends = motion.positions[:, [motion.roles[left], motion.roles[right]]]
-        line = _at_analysis_rate(ends[:, 0] - ends[:, 1], motion.frame_rate, cut_off)
+        line = _at_analysis_rate(ends[:, 0] - ends[:, 1], motion.frame_rate)
         if _gives_heading(line).any():
             return line
     return None

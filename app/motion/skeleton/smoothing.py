@@ -1,8 +1,8 @@
 """Low-pass filters the positions of joints before they are analyzed, as biomechanics does.
 
 Noise of a few millimeters hardly changes a position, but it dominates a velocity, and it fills the
-directions in which a covariance matrix is small. So all analyses read smoothed positions; playback
-and export read the stored ones.
+directions in which a covariance matrix is small. So descriptors are computed from smoothed
+positions; playback and export read the stored ones.
 
 The filter is Butterworth's of the fourth order: one of the second order that runs forward and
 backward, so that there is no delay. The cut-off frequency comes from the recording itself by
@@ -79,8 +79,9 @@ def cut_off_of(positions: FloatArray, rate: float) -> float:
 def residuals(positions: FloatArray, rate: float, cut_offs: FloatArray) -> FloatArray:
     """(c,) the root mean square, over frames and coordinates, of what the filter removes.
 
-    positions: (frames, joints, 3) at `rate`. cut_offs: (c,) Hz, below .4 of the rate. The straight line from the first to
-    the last frame is removed before, since the spectrum takes the motion as periodic.
+    positions: (frames, joints, 3) at `rate`. cut_offs: (c,) Hz, below .4 of the rate. The straight
+    line from the first to the last frame is removed before, since the spectrum takes the motion as
+    periodic.
     """
     frames = len(positions)
     flat = positions.reshape(frames, -1)

@@ -12,7 +12,7 @@ from app.analysis.descriptors.motion_shape import moments_of
 from app.errors import ClipNotFound, ClipNotReady, NotEnoughLabels
 from app.models.synthesis.body import Donor, same_body
 from app.models.synthesis.model import Synthesis
-from app.motion.frame.body_frame import ANALYSIS_RATE, body_track
+from app.motion.frame.body_frame import ANALYSIS_RATE, body_track, smooth_track
 from app.motion.frame.posed_start import posed_frames
 from app.motion.motion import Motion
 from app.motion.posing.canonical_body import on_canonical_body
@@ -107,7 +107,7 @@ def _detail(lib: Library, takes: list[ClipRecord]) -> tuple[FloatArray | None, F
 
 def detail_of(motion: Motion) -> FloatArray:
     """(n, 43) moments of the active part of a take, from which its shape was computed too."""
-    return moments_of(active_part(body_track(motion)))
+    return moments_of(active_part(smooth_track(motion)))
 
 
 def _donor(lib: Library, clip: ClipRecord) -> Donor:

@@ -56,7 +56,7 @@ def test_the_frame_rate_does_not_change_local_positions(rate: float) -> None:
 def test_the_heading_is_continuous_over_several_turns() -> None:
     track = body_track(motion_of(walking(seconds=10.0, turn=2.0)))
     assert track.heading[-1] - track.heading[0] == pytest.approx(20.0, abs=0.01)
-    np.testing.assert_allclose(track.yaw_rate(), 2.0, atol=5e-3)
+    np.testing.assert_allclose(track.yaw_rate(), 2.0, atol=1e-3)
 
 
 def test_the_heading_is_interpolated_while_the_shoulders_are_upright() -> None:
@@ -64,8 +64,7 @@ def test_the_heading_is_interpolated_while_the_shoulders_are_upright() -> None:
     left, right = (SUN_ROLES.index(JointRole(f"{side}_shoulder")) for side in ("left", "right"))
     body[20:40, left] = [0.001, 1.6, 0.0]
     body[20:40, right] = [0.0, 1.2, 0.001]
-    # the filter spreads the jump of the shoulders over some frames
-    np.testing.assert_allclose(body_track(motion_of(body)).heading, 0.0, atol=0.02)
+    np.testing.assert_allclose(body_track(motion_of(body)).heading, 0.0, atol=1e-9)
 
 
 def test_the_knees_give_left_and_right_without_shoulders() -> None:

@@ -5,7 +5,7 @@ import numpy as np
 from app.analysis.descriptors.active_part import active_part
 from app.analysis.descriptors.motion_shape import motion_shape
 from app.models.synthesis.motion import course_of
-from app.motion.frame.body_frame import body_track
+from app.motion.frame.body_frame import smooth_track
 from app.motion.posing.canonical_body import on_canonical_body
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray
@@ -26,7 +26,7 @@ def test_a_take_that_begins_in_a_t_pose_is_followed_without_it() -> None:
     for role, x in ((JointRole.LEFT_HAND, 0.8), (JointRole.RIGHT_HAND, -0.8)):
         t_pose[:, SUN_ROLES.index(role), 0] += x
     thrown = motion_of(np.concatenate([t_pose, wave]))
-    shape = motion_shape(active_part(body_track(thrown))).astype(np.float64)
+    shape = motion_shape(active_part(smooth_track(thrown))).astype(np.float64)
     start, rest = fastest(shape, detail_of(thrown), shape)
     assert start < 1.2 * rest
 
