@@ -1,8 +1,9 @@
 """The analysis of a motion: all arrays that are stored for a clip, by name.
 
-Arrays (float32 if nothing else is said; n frames at 30 Hz, m at 10 Hz):
-role_positions (n, 13, 3) meters, world; features_10hz (m, 82); motion_vector (128,);
-wide_motion_vector (512,); msv_lambda (1,), msv_rho (13,), msv_epsilon (n,), msv_convergence
+Arrays (float32 if nothing else is said; n frames at 30 Hz, m at 10 Hz; a frames of the active
+part at 30 Hz): role_positions (n, 13, 3) meters, world; features_10hz (m, 82); active_span (2,)
+seconds; motion_vector (128,);
+wide_motion_vector (512,); msv_lambda (1,), msv_rho (13,), msv_epsilon (a,), msv_convergence
 (i, 2), the error and the change of lambda after each of i iterations; motion_sample (1250,);
 angle_sample (642,); motion_shape (1378,); symbol_statistics (131,); window_vectors_* (w, 125)
 float16 and window_spans_* (w, 2) seconds, for 1s, 2s and 4s; beat_times (b,) float64
@@ -23,6 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from app.analysis.descriptors.active_part import active_span
 from app.analysis.descriptors.angle_sample import angle_sample
 from app.analysis.descriptors.frame_features import features_at_10hz, frame_features
 from app.analysis.descriptors.motion_sample import motion_sample
@@ -40,7 +42,7 @@ from app.analysis.segments.keypose_arrays import keypose_arrays
 from app.analysis.stage_times import StageTimes
 from app.analysis.symbols.channels import symbol_features, symbol_statistics
 from app.analysis.symbols.symbol import describe_symbol
-from app.motion.frame.body_frame import BodyTrack, body_track
+from app.motion.frame.body_frame import BodyTrack, body_track, smooth_track
 from app.motion.frame.gait import exact_gait_cycles
 from app.motion.motion import Motion
 from app.motion.skeleton.recording import Caution
@@ -87,7 +89,7 @@ def analyze(
     times = times or StageTimes()
     with times.stage("describe"):
         track = body_track(motion)
-        parts = _Parts(motion, track)
+        parts = _Parts(smooth_track(motion))
         arrays: dict[str, NDArray[Any]] = {**_for_search(parts)}
     with times.stage("symbol"):
         arrays |= describe_symbol(parts.channels)
@@ -114,15 +116,24 @@ def describe_for_search(motion: Motion, names: Collection[str] | None = None) ->
     as from `analyze`. Raises KeyError for a name that only `analyze` computes, and TooShort or
     NotHuman.
     """
-    return Analysis(motion, {**_for_search(_Parts(motion, body_track(motion)), names)})
+    return Analysis(motion, {**_for_search(_Parts(smooth_track(motion)), names)})
 
 
 class _Parts:
     """Parts from which the arrays are made. Each is computed once, when it is first needed."""
 
-    def __init__(self, motion: Motion, track: BodyTrack) -> None:
-        self.motion = motion
+    def __init__(self, track: BodyTrack) -> None:
         self.track = track
+
+    @cached_property
+    def span(self) -> tuple[int, int]:
+        """The first frame of the active part, and the frame after its last."""
+        return active_span(self.track)
+
+    @cached_property
+    def active(self) -> BodyTrack:
+        """The active part of the track, which descriptors of the whole clip are computed from."""
+        return self.track.part(*self.span)
 
     @cached_property
     def features(self) -> FloatArray:
@@ -137,22 +148,22 @@ class _Parts:
     @cached_property
     def described(self) -> FloatArray:
         """(3606,) the numbers from which motion vectors are projected."""
-        return describe(self.features)
+        return describe(frame_features(self.active))
 
     @cached_property
     def volume(self) -> Rank1:
         """The rank-1 factors of the motion volume."""
-        return decompose(self.track)
+        return decompose(self.active)
 
     @cached_property
     def channels(self) -> FloatArray:
-        """(n, 26) the channels of the motion symbol."""
-        return symbol_features(self.track)
+        """(a, 26) the channels of the motion symbol."""
+        return symbol_features(self.active)
 
     @cached_property
     def cycles(self) -> list[tuple[float, float]]:
-        """The gait cycles: start and end in frames."""
-        return exact_gait_cycles(self.track)
+        """The gait cycles: start and end in frames of the active part."""
+        return exact_gait_cycles(self.active)
 
     @cached_property
     def windows(self) -> dict[str, FloatArray]:
@@ -163,15 +174,16 @@ class _Parts:
 _FLOAT32: dict[str, Callable[[_Parts], FloatArray]] = {
     "role_positions": lambda parts: parts.track.positions,
     "features_10hz": lambda parts: parts.features_10hz,
+    "active_span": lambda parts: np.array(parts.span) / parts.track.rate,
     "motion_vector": lambda parts: narrow(parts.described),
     "wide_motion_vector": lambda parts: wide(parts.described),
     "msv_lambda": lambda parts: np.array([parts.volume.weight]),
     "msv_rho": lambda parts: parts.volume.primary,
     "msv_epsilon": lambda parts: parts.volume.secondary,
     "msv_convergence": lambda parts: np.column_stack([parts.volume.errors, parts.volume.changes]),
-    "motion_sample": lambda parts: motion_sample(parts.track, parts.cycles),
-    "angle_sample": lambda parts: angle_sample(parts.motion, parts.track, parts.cycles),
-    "motion_shape": lambda parts: motion_shape(parts.track, parts.cycles),
+    "motion_sample": lambda parts: motion_sample(parts.active, parts.cycles),
+    "angle_sample": lambda parts: angle_sample(parts.active, parts.cycles),
+    "motion_shape": lambda parts: motion_shape(parts.active, parts.cycles),
     "symbol_statistics": lambda parts: symbol_statistics(parts.channels, parts.track.rate),
 }
 """How each array that is stored as float32 is computed."""

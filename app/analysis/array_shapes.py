@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 SHAPES: Mapping[str, tuple[int | None, ...]] = {
     "role_positions": (None, 13, 3),
     "features_10hz": (None, 82),
+    "active_span": (2,),
     "motion_vector": (128,),
     "wide_motion_vector": (512,),
     "msv_lambda": (1,),

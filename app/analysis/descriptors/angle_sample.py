@@ -8,27 +8,21 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.analysis.descriptors.joint_angles import filtered, joint_angles
+from app.analysis.descriptors.joint_angles import joint_angles
 from app.analysis.descriptors.motion_sample import SAMPLES, turn_and_speed
 from app.motion.frame.body_frame import BodyTrack
 from app.motion.frame.gait import exact_gait_cycles
-from app.motion.motion import Motion
 from app.motion.skeleton.resampling import resample_to, sample_at
 from app.numerics.arrays import FloatArray
 
 
-def angle_sample(
-    motion: Motion, track: BodyTrack, cycles: list[tuple[float, float]] | None = None
-) -> FloatArray:
+def angle_sample(track: BodyTrack, cycles: list[tuple[float, float]] | None = None) -> FloatArray:
     """(642,) float32: 32 x 20 angles (radians), net turn, mean speed, as in the motion sample.
 
-    track: the body track of the same motion. cycles: `exact_gait_cycles(track)`, if the caller
-    has them. Positions are low-pass filtered at the clip's own rate. So they can be sampled at
-    the analysis rate, and at 32 phases of a gait cycle, without another filter.
+    cycles: `exact_gait_cycles(track)`, if the caller has them. The track is smoothed at the clip's
+    own rate. So its angles can be sampled at 32 phases of a gait cycle without another filter.
     """
-    smooth = filtered(motion.role_positions().astype(np.float64), motion.frame_rate)
-    times = np.arange(track.frames) * (motion.frame_rate / track.rate)
-    angles = joint_angles(sample_at(smooth, times), track.rate)
+    angles = joint_angles(track.positions, track.rate)
     cycles = exact_gait_cycles(track) if cycles is None else cycles
     if cycles:
         phases = np.arange(SAMPLES) / SAMPLES

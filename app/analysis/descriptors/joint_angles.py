@@ -1,8 +1,8 @@
 """The angles of the joints over time, as gait laboratories measure them (Vasilescu 2002, sec. 6).
 
-The positions are low-pass filtered at 6 Hz (`filtered`). Each limb gets a coordinate frame, and its
-orientation relative to the limb before it gives the joint's angles. The angles are computed from
-positions by role, not from the file's rotations. Some formats have no rotations, and rotations
+The positions are smoothed (app.motion.skeleton.smoothing). Each limb gets a coordinate frame, and
+its orientation relative to the limb before it gives the joint's angles. The angles are computed
+from positions by role, not from the file's rotations. Some formats have no rotations, and rotations
 depend on the rest pose of each skeleton, so they do not agree across libraries.
 
 A ball joint has three angles that are smooth for all directions of a limb. Two are the swing of
@@ -22,15 +22,6 @@ import scipy
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.skeleton.occlusion import MAX_GAP, runs
 from app.numerics.arrays import BoolArray, FloatArray
-
-CUT_OFF = 6.0
-"""Hz: the frequency at which the filter halves the power."""
-
-FILTER_PASSES = 2
-"""Forward and backward, so that there is no delay. The filter's order doubles from 2 to 4."""
-
-PADDING = 0.75
-"""Seconds by which both ends are continued, by point reflection, so that the filter settles."""
 
 MIN_BEND = np.radians(12.0)
 """Radians. With a smaller bend of elbow or knee, the plane of the limb is noise."""
@@ -102,23 +93,6 @@ def joint_angles(positions: FloatArray, rate: float) -> FloatArray:
     balls = _ball_angles(upper, lower, max(1, round(MAX_GAP * rate)))
     swings = [_swing(limb, _UP, _LEFT)[0] for limb in (spine, head)]
     return np.hstack([*swings, *balls])
-
-
-def filtered(samples: FloatArray, rate: float) -> FloatArray:
-    """`samples` (frames, ...) at `rate` Hz, filtered by the paper's fourth-order Butterworth.
-
-    This is two passes of a second-order filter. Its cut-off is higher, so that both passes
-    together halve the power at CUT_OFF. If the rate is too low to contain such frequencies, or
-    there is only one frame, the samples are returned unchanged.
-    """
-    cut_off = CUT_OFF / (2.0 ** (1.0 / FILTER_PASSES) - 1.0) ** 0.25
-    if cut_off >= rate / 2 or len(samples) < 2:
-        return samples
-    sections = scipy.signal.butter(2, cut_off, fs=rate, output="sos")
-    width = round(PADDING * rate)
-    around = [(width, width)] + [(0, 0)] * (samples.ndim - 1)
-    padded = np.pad(samples, around, mode="reflect", reflect_type="odd")
-    return np.asarray(scipy.signal.sosfiltfilt(sections, padded, axis=0, padlen=0)[width:-width])
 
 
 def with_gaps_filled(values: FloatArray, seen: BoolArray, max_gap: int) -> FloatArray:

@@ -32,8 +32,11 @@ from app.numerics.arrays import FloatArray
 
 DIMENSIONS = 128
 WIDE_DIMENSIONS = 512
-RIDGE = 1e-3
-"""Added to the diagonal of the covariance, so that the logarithm of a still feature is finite."""
+RIDGE = 1e-2
+"""Added to the diagonal of the covariance. So the logarithm of a still feature is finite, and a
+feature that moves by less than 0.1 body lengths (or 0.3 body lengths per second) says little: there
+it is noise that moves. Of 1e-3, 3e-3, 1e-2 and 3e-2, this one found the original of clips with a
+noise of 1 degree on each joint most often, with the same figures for clean clips."""
 
 COVARIANCE_SCALE = 1 / 20
 """The weight of the logarithm's entries."""

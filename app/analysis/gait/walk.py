@@ -6,18 +6,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.analysis.descriptors.joint_angles import filtered
 from app.errors import NoGait
 from app.kinedex_error import Place
+from app.motion.frame.posed_start import without_posed_start
 from app.motion.motion import Motion
-from app.motion.posing.posed_start import without_posed_start
 from app.motion.roles.joint_roles import JointRole
+from app.motion.skeleton.smoothing import low_passed
 from app.numerics.arrays import FloatArray
 
 SIDES = ("left", "right")
 
 PROGRESS_SPAN = 1.0
 """Seconds, about one stride: the direction of progress is that of the hips' way in this time."""
+
+CUT_OFF = 6.0
+"""Hz: the usual cut-off of gait laboratories, the same for all clips so that they compare."""
 
 MIN_RATE = 15.0
 """Hz. With fewer frames per second, a foot strike is not found within a tenth of a stride."""
@@ -27,7 +30,7 @@ _ACROSS_FLOOR = [0, 2]
 
 @dataclass(frozen=True, slots=True)
 class Walk:
-    """A motion as gait analysis sees it: n frames, filtered at 6 Hz, without a posed first frame.
+    """A motion as gait analysis sees it: n frames, filtered at 6 Hz, without a posed start.
 
     hips: (n, 3) meters. leftward: (n, 2) X and Z from the right to the left knee. ankles: (n, 3)
     by side. toes: (n, 3) by side, those of the ankle if the skeleton has no toes. progress: (n, 2)
@@ -107,7 +110,7 @@ def walk_of(motion: Motion) -> Walk:
 
 def _track(motion: Motion, role: JointRole) -> FloatArray:
     positions = motion.positions[:, motion.roles[role]].astype(np.float64)
-    return filtered(positions, motion.frame_rate)
+    return low_passed(positions, motion.frame_rate, CUT_OFF)
 
 
 def _progress(hips: FloatArray, rate: float) -> FloatArray:

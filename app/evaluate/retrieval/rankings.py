@@ -11,11 +11,12 @@ from functools import partial
 
 import numpy as np
 
+from app.analysis.descriptors.active_part import active_part
 from app.analysis.descriptors.motion_volume import cross_correlations, decompose, warping_distances
-from app.motion.frame.body_frame import body_track
+from app.motion.frame.body_frame import smooth_track
 from app.numerics.tensors.rank1 import Rank1
 from app.search.example.by_example import rank_by_example
-from app.search.example.distances import EPSILON, FEATURES, RHO, Descriptors
+from app.search.example.distances import ACTIVE, EPSILON, FEATURES, RHO, Descriptors
 from app.search.example.methods import Method
 from app.search.index.vector_index import VECTOR
 from app.services.library.library import Library
@@ -43,7 +44,7 @@ def by_method(lib: Library, method: Method, filter: ClipFilter | None) -> Ranker
 
 def _query(lib: Library, clip: ClipRecord) -> Descriptors:
     with lib.store.read() as tx:
-        return arrays.get_named(tx, clip.id, (VECTOR, FEATURES, RHO, EPSILON))
+        return arrays.get_named(tx, clip.id, (VECTOR, FEATURES, ACTIVE, RHO, EPSILON))
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +66,7 @@ class Volumes:
         """Compute the factors from the stored motions; `step` is called after each clip."""
         factors = {}
         for clip in chosen:
-            track = body_track(load_motion(lib, clip))
+            track = active_part(smooth_track(load_motion(lib, clip)))
             factors[clip.id] = decompose(track, q=q, threshold=threshold)
             step()
         return cls(factors)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from app.analysis.descriptors.active_part import active_part
 from app.analysis.symbols.channels import symbol_features
 from app.evaluate.charts import Curve, Format, Panel, curves_picture
 from app.models.held_out.words import RECALLS, WordEvaluation, WordFigures, held_out_word_figures
@@ -14,7 +15,7 @@ from app.models.words.correlated_space import fit_correlated_space
 from app.models.words.query import understand
 from app.models.words.symbol_space import fit_symbol_space
 from app.models.words.vocabulary import WordVocabulary
-from app.motion.frame.body_frame import body_track
+from app.motion.frame.body_frame import smooth_track
 from app.numerics.arrays import FloatArray
 from app.services import fields
 from app.services.library.library import Library
@@ -55,7 +56,7 @@ def judge_words(lib: Library, filter: ClipFilter | None = None) -> WordEvaluatio
     training = read_training_set(lib.store, ready_only(filter))
 
     def channels(row: int) -> FloatArray:
-        return symbol_features(body_track(load_motion(lib, training.clips[row])))
+        return symbol_features(active_part(smooth_track(load_motion(lib, training.clips[row]))))
 
     return held_out_word_figures(
         training.symbols,

@@ -14,9 +14,11 @@ import numpy as np
 
 from app.errors import NotHuman, TooShort
 from app.kinedex_error import Place
+from app.motion.frame.posed_start import with_held_start
 from app.motion.motion import Motion
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.skeleton.resampling import resample
+from app.motion.skeleton.smoothing import cut_off_of, low_passed
 from app.numerics.arrays import BoolArray, FloatArray
 
 ANALYSIS_RATE = 30.0
@@ -100,10 +102,25 @@ class BodyTrack:
 def body_track(motion: Motion) -> BodyTrack:
     """The track of the body in `motion`, resampled to ANALYSIS_RATE.
 
-    Raises TooShort for fewer than MIN_FRAMES frames at that rate, and NotHuman for a body without
-    size.
+    A pose at the start that does not belong to the motion is replaced by the first pose of the
+    motion (app.motion.frame.posed_start). Raises TooShort for fewer than MIN_FRAMES frames at that
+    rate, and NotHuman for a body without size.
     """
+    return _track(with_held_start(motion), is_smooth=False)
+
+
+def smooth_track(motion: Motion) -> BodyTrack:
+    """As `body_track`, of smoothed positions (app.motion.skeleton.smoothing).
+
+    Descriptors are computed from it. Energies are not: they have a model of the noise that needs
+    to see it. The filter runs at ANALYSIS_RATE, so that a motion is the same at any frame rate.
+    """
+    return _track(with_held_start(motion), is_smooth=True)
+
+
+def _track(motion: Motion, *, is_smooth: bool) -> BodyTrack:
     positions = _at_analysis_rate(motion.role_positions(), motion.frame_rate)
+    left = _left_axis(motion)
     if len(positions) < MIN_FRAMES:
         seconds = MIN_FRAMES / ANALYSIS_RATE
         message = f"expected at least {seconds:.2f} s, found {motion.duration:.3f} s"
@@ -111,8 +128,12 @@ def body_track(motion: Motion) -> BodyTrack:
             f"The motion has {motion.frames} frames; {seconds:.2f} s are needed.",
             places=[Place("frames", message)],
         )
+    if is_smooth:
+        cut_off = cut_off_of(positions, ANALYSIS_RATE)
+        positions = low_passed(positions, ANALYSIS_RATE, cut_off)
+        left = None if left is None else low_passed(left, ANALYSIS_RATE, cut_off)
     length = body_length(motion)
-    heading = _heading(_left_axis(motion), len(positions))
+    heading = _heading(left, len(positions))
     origin = positions[:, SUN_ROLES.index(JointRole.HIPS)]
     local = turned(positions - origin[:, None], -heading) / length
     return BodyTrack(positions, local, origin, heading, length)

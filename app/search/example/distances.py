@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
+from app.analysis.descriptors.frame_features import WARPING_RATE
 from app.analysis.descriptors.motion_volume import (
     MAX_CROSS_CORRELATION,
     cross_correlations,
@@ -19,7 +20,7 @@ from app.numerics.alignment.dtw import dtw_distances
 from app.numerics.arrays import FloatArray
 from app.search.example.methods import Method
 
-FEATURES, RHO, EPSILON = "features_10hz", "msv_rho", "msv_epsilon"
+FEATURES, ACTIVE, RHO, EPSILON = "features_10hz", "active_span", "msv_rho", "msv_epsilon"
 BATCH = 256
 """The number of clips that are compared at a time."""
 
@@ -28,8 +29,9 @@ Loader = Callable[[Sequence[str], str], Mapping[str, FloatArray]]
 
 
 Descriptors = Mapping[str, FloatArray]
-"""Descriptors of a query by name: its motion vector (128,), FEATURES (m, 82) at 10 Hz, RHO (13,)
-and EPSILON (n,) of its motion volume. A method needs only those that it compares."""
+"""Descriptors of a query by name: its motion vector (128,), FEATURES (m, 82) at 10 Hz and the
+ACTIVE part (2,) in seconds, RHO (13,) and EPSILON (a,) of its motion volume. A method needs only
+those that it compares."""
 
 
 def distances_to(
@@ -55,8 +57,15 @@ def distances_to(
     return distances
 
 
+def active_frames(features: FloatArray, span: FloatArray) -> FloatArray:
+    """The `features` (m, 82) at 10 Hz within `span` (2,), in seconds; at least one frame."""
+    first = min(int(span[0] * WARPING_RATE), len(features) - 1)
+    return features[first : max(first + 1, int(np.ceil(span[1] * WARPING_RATE)))]
+
+
 def _by_features(query: Descriptors, columns: list[list[FloatArray]]) -> FloatArray:
-    return dtw_distances(query[FEATURES], columns[0])
+    clips = [active_frames(*one) for one in zip(*columns, strict=True)]
+    return dtw_distances(active_frames(query[FEATURES], query[ACTIVE]), clips)
 
 
 def _by_volume_dtw(query: Descriptors, columns: list[list[FloatArray]]) -> FloatArray:
@@ -71,7 +80,7 @@ def _by_volume_correlation(query: Descriptors, columns: list[list[FloatArray]]) 
 
 _Comparison = Callable[[Descriptors, list[list[FloatArray]]], FloatArray]
 _COMPARISONS: dict[Method, tuple[tuple[str, ...], _Comparison]] = {
-    Method.DTW: ((FEATURES,), _by_features),
+    Method.DTW: ((FEATURES, ACTIVE), _by_features),
     Method.MSV_DTW: ((RHO, EPSILON), _by_volume_dtw),
     Method.MSV_XCORR: ((RHO, EPSILON), _by_volume_correlation),
 }

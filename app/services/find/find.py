@@ -9,7 +9,7 @@ from functools import partial
 
 from app.models.metric.learned_metric import INPUTS
 from app.search.example.by_example import SCALES, rank_by_example
-from app.search.example.distances import EPSILON, FEATURES, RHO
+from app.search.example.distances import ACTIVE, EPSILON, FEATURES, RHO
 from app.search.example.methods import LEARNED, Method
 from app.search.index.filters import as_filter
 from app.search.index.labels import LabelView
@@ -32,7 +32,7 @@ from app.services.find.query import describe
 from app.services.library.library import Library
 from app.store.clips.filter import ClipFilter
 
-_NAMES = (VECTOR, FEATURES, RHO, EPSILON)
+_NAMES = (VECTOR, FEATURES, ACTIVE, RHO, EPSILON)
 
 
 def find_motion(lib: Library, query: MotionQuery) -> Hits:

@@ -7,15 +7,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.analysis.descriptors.motion_sample import SAMPLES
-from app.analysis.descriptors.motion_shape import CHANNELS, moments_of
+from app.analysis.descriptors.active_part import active_part
+from app.analysis.descriptors.motion_shape import moments_of
 from app.errors import ClipNotFound, ClipNotReady, NotEnoughLabels
 from app.models.synthesis.body import Donor, same_body
 from app.models.synthesis.model import Synthesis
-from app.motion.frame.body_frame import ANALYSIS_RATE, body_track
+from app.motion.frame.body_frame import ANALYSIS_RATE, body_track, smooth_track
+from app.motion.frame.posed_start import posed_frames
 from app.motion.motion import Motion
 from app.motion.posing.canonical_body import on_canonical_body
-from app.motion.posing.posed_start import without_posed_start
 from app.motion.roles.joint_roles import JointRole
 from app.motion.skeleton.animation import Animation
 from app.numerics.arrays import FloatArray
@@ -60,7 +60,7 @@ def material_of(lib: Library, model: Synthesis, plan: Plan) -> Material:
     donors = same_body([_donor(lib, clip) for clip in own[:MAX_DONORS]])
     take, take_shape = None, None
     if plan.shape[-1] < 0.5:  # the last number of a shape says whether the motion is cyclic
-        take, take_shape = _detail(lib, takes, plan.shape)
+        take, take_shape = _detail(lib, takes)
     licenses = {clip.license for clip in (*own, *takes)}
     words = set.intersection(*(set(clip.words) for clip in takes))
     return Material(
@@ -91,38 +91,23 @@ def _still_ready(lib: Library, clip_ids: list[str]) -> list[ClipRecord]:
     return ready
 
 
-def _detail(
-    lib: Library, takes: list[ClipRecord], target: FloatArray
-) -> tuple[FloatArray | None, FloatArray | None]:
+def _detail(lib: Library, takes: list[ClipRecord]) -> tuple[FloatArray | None, FloatArray | None]:
     """The first non-cyclic take as moments (n, 43) and as shape (1378,); None if all are cyclic.
 
-    takes: sorted by their distance to the target; target: (1378,) the predicted shape.
+    takes: sorted by their distance to the predicted shape.
     """
     with lib.store.read() as tx:
         shapes = usable_arrays.get_many(tx, [clip.id for clip in takes], SHAPE)
     for clip in takes:
         shape = shapes.get(clip.id)
         if shape is not None and shape[-1] < 0.5:
-            return detail_of(load_motion(lib, clip), shape, target)
+            return detail_of(load_motion(lib, clip)), shape.astype(np.float64)
     return None, None
 
 
-def detail_of(
-    motion: Motion, shape: FloatArray, target: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """(n, 43) moments of a take and its shape (1378,), prepared for correction to `target` (1378,).
-
-    If a take begins with a pose that does not belong to it, it is used from its second frame. Its
-    shape has that pose as first moment. The target shape may have it too, if the model learned from
-    takes with this pose. So the first moment gets the same correction as the second one.
-    """
-    moving = without_posed_start(motion)
-    prepared = np.array(shape, dtype=np.float64)
-    if moving is not motion:
-        # (SAMPLES, CHANNELS) views: the change of `own` changes `prepared`
-        own, aim = (whole[:-2].reshape(SAMPLES, CHANNELS) for whole in (prepared, target))
-        own[0] = aim[0] - (aim[1] - own[1])
-    return moments_of(body_track(moving)), prepared
+def detail_of(motion: Motion) -> FloatArray:
+    """(n, 43) moments of the active part of a take, from which its shape was computed too."""
+    return moments_of(active_part(smooth_track(motion)))
 
 
 def _donor(lib: Library, clip: ClipRecord) -> Donor:
@@ -131,17 +116,21 @@ def _donor(lib: Library, clip: ClipRecord) -> Donor:
 
 
 def donor_of(motion: Motion, animation: Animation) -> Donor:
-    """A donor from the motion of a clip and its animation, which have the same frames."""
+    """A donor from the motion of a clip and its animation, which have the same frames.
+
+    A pose at the start that does not belong to the motion is left out.
+    """
     joints = dict(motion.roles)
     if np.sum(animation.skeleton.parents < 0) != 1:
         # markers have no skeleton, so the canonical body is used
         animation = on_canonical_body(motion)
         joints = {JointRole(name): i for i, name in enumerate(animation.skeleton.names)}
     track, turning = body_track(motion), animation.resampled(ANALYSIS_RATE)
-    frames = min(len(turning.rotations), track.frames)
+    first = int(np.ceil(posed_frames(motion) / motion.frame_rate * ANALYSIS_RATE))
+    stop = min(len(turning.rotations), track.frames)
     cut = replace(
         turning,
-        rotations=turning.rotations[:frames],
-        translations=turning.translations[:frames],
+        rotations=turning.rotations[first:stop],
+        translations=turning.translations[first:stop],
     )
-    return Donor(cut, track.part(0, frames), joints)
+    return Donor(cut, track.part(first, stop), joints)

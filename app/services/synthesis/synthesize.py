@@ -10,13 +10,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from app.analysis.descriptors.active_part import active_part
 from app.analysis.descriptors.motion_shape import motion_shape
 from app.errors import ModelNotFitted
 from app.formats.bvh.export import write_animation_bvh
 from app.models.synthesis.body import embody
 from app.models.synthesis.model import Synthesis
 from app.models.synthesis.motion import course_of
-from app.motion.frame.body_frame import body_track
+from app.motion.frame.body_frame import smooth_track
 from app.motion.motion import Motion
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.skeleton.animation import Animation
@@ -103,7 +104,7 @@ def synthesize(lib: Library, query: SynthesisQuery) -> Synthesized:
     )
     animation = embody(course, material.donors)
     motion = _as_motion(animation, material.donors[0].joints)
-    quality = judge(lib, fitted, plan, motion, motion_shape(body_track(motion)))
+    quality = judge(lib, fitted, plan, motion, motion_shape(active_part(smooth_track(motion))))
     made = Synthesized(
         person=plan.person,
         task=plan.task,

@@ -4,14 +4,14 @@ import numpy as np
 
 from app.analysis.descriptors.angle_sample import angle_sample
 from app.analysis.descriptors.motion_sample import SAMPLES, motion_sample
-from app.motion.frame.body_frame import body_track
+from app.motion.frame.body_frame import smooth_track
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of, walking, waving
 
 
 def _sample(positions: FloatArray, rate: float = 30.0) -> FloatArray:
     motion = motion_of(positions, rate)
-    return angle_sample(motion, body_track(motion))
+    return angle_sample(smooth_track(motion))
 
 
 def _angles(sample: FloatArray) -> FloatArray:
@@ -20,8 +20,8 @@ def _angles(sample: FloatArray) -> FloatArray:
 
 def test_width_and_the_tail_of_the_motion_sample() -> None:
     motion = motion_of(walking(turn=0.4))
-    track = body_track(motion)
-    sample = angle_sample(motion, track)
+    track = smooth_track(motion)
+    sample = angle_sample(track)
     assert sample.shape == (32 * 20 + 2,)
     assert sample.dtype == np.float32
     np.testing.assert_array_equal(sample[-2:], motion_sample(track)[-2:])

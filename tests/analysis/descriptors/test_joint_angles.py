@@ -8,8 +8,6 @@ from scipy.spatial.transform import Rotation
 
 from app.analysis.descriptors.joint_angles import (
     ANGLES,
-    CUT_OFF,
-    filtered,
     joint_angles,
     with_gaps_filled,
 )
@@ -98,21 +96,6 @@ def test_a_body_without_limbs_or_in_one_place_has_angles_of_zero() -> None:
     found = dict(zip(ANGLES, joint_angles(body, 30.0)[0].tolist(), strict=True))
     assert [found[f"left_arm_{a}"] for a in ("flexion", "aside", "turn", "bend")] == [0.0] * 4
     assert not joint_angles(np.zeros((3, 13, 3)), 30.0).any()
-
-
-def test_the_filter_halves_the_power_at_its_cut_off_and_delays_nothing() -> None:
-    rate, t = 120.0, np.arange(1200) / 120.0
-    for hz, gain in ((1.0, 1.0), (CUT_OFF, np.sqrt(0.5)), (20.0, 0.0)):
-        wave = np.sin(2 * np.pi * hz * t)
-        found = filtered(wave, rate)[200:-200]
-        np.testing.assert_allclose(found, gain * wave[200:-200], atol=0.02)
-
-
-@pytest.mark.parametrize("frames", [1, 2, 3, 10])
-@pytest.mark.parametrize("rate", [10.0, 30.0, 240.0])
-def test_short_and_slow_clips_pass(frames: int, rate: float) -> None:
-    steady = np.linspace(0, 1, frames)[:, None] * np.ones(3)
-    np.testing.assert_allclose(filtered(steady, rate), steady, atol=0.01)
 
 
 def test_short_gaps_are_spanned_by_a_spline_and_long_ones_by_a_line() -> None:

@@ -11,7 +11,7 @@ import pytest
 from app.numerics.alignment.dtw import dtw_distances
 from app.numerics.arrays import FloatArray
 from app.search.example.by_example import rank_by_example
-from app.search.example.distances import EPSILON, FEATURES, RHO, Descriptors
+from app.search.example.distances import ACTIVE, EPSILON, FEATURES, RHO, Descriptors
 from app.search.example.fusion import SHORTLIST
 from app.search.example.methods import Method
 from app.search.index.nearest_ranking import NearestRanking
@@ -23,6 +23,10 @@ from tests.search.indexed import indexed
 from tests.search.walking import walk
 
 COUNT = SHORTLIST + 40
+
+
+WHOLE = np.array([0.0, 1e3])
+"""All of a clip is active."""
 
 
 class Gallery:
@@ -46,7 +50,9 @@ class Gallery:
     def nearest(self, query: FloatArray, clip_filter: ClipFilter, exclude: Any) -> NearestRanking:
         return NearestRanking(1, self.rows, self.rows.labels.mask(clip_filter, exclude), query)
 
-    def load(self, clip_ids: Sequence[str], _: str) -> Mapping[str, FloatArray]:
+    def load(self, clip_ids: Sequence[str], name: str) -> Mapping[str, FloatArray]:
+        if name == ACTIVE:
+            return dict.fromkeys(clip_ids, WHOLE)
         self.read.extend(clip_ids)
         return {clip_id: self.features[clip_id] for clip_id in clip_ids}
 
@@ -56,6 +62,7 @@ class Gallery:
         return {
             VECTOR: vector.astype(np.float32),
             FEATURES: self.features["c000"][:-1],
+            ACTIVE: WHOLE,
             RHO: np.zeros(13),
             EPSILON: np.zeros(2),
         }
