@@ -44,6 +44,7 @@ from app.analysis.symbols.channels import symbol_features, symbol_statistics
 from app.analysis.symbols.symbol import describe_symbol
 from app.motion.frame.body_frame import BodyTrack, body_track, smooth_track
 from app.motion.frame.gait import exact_gait_cycles
+from app.motion.frame.posed_start import posed_frames
 from app.motion.motion import Motion
 from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray
@@ -105,7 +106,17 @@ def analyze(
         arrays |= keypose_arrays(keyposes, arrays["features_10hz"])
     offset = None if rhythm.offset is None else rhythm.offset.seconds
     measures = measure(track, rms_energies, rhythm.beats.tempo)
-    return Analysis(motion, arrays, offset, rhythm.cautions, measures, times.seconds)
+    cautions = (*_of_start(motion), *rhythm.cautions)
+    return Analysis(motion, arrays, offset, cautions, measures, times.seconds)
+
+
+def _of_start(motion: Motion) -> tuple[Caution, ...]:
+    posed = posed_frames(motion)
+    if not posed:
+        return ()
+    what = "The first frame is a pose" if posed == 1 else f"The first {posed} frames are a pose"
+    detail = f"{what} that does not belong to the motion. No analysis reads it."
+    return (Caution("posed_start", detail, frames=(0, posed)),)
 
 
 def describe_for_search(motion: Motion, names: Collection[str] | None = None) -> Analysis:

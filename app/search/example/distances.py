@@ -59,8 +59,13 @@ def distances_to(
 
 def active_frames(features: FloatArray, span: FloatArray) -> FloatArray:
     """The `features` (m, 82) at 10 Hz within `span` (2,), in seconds; at least one frame."""
-    first = min(int(span[0] * WARPING_RATE), len(features) - 1)
+    first = min(first_active_frame(span), len(features) - 1)
     return features[first : max(first + 1, int(np.ceil(span[1] * WARPING_RATE)))]
+
+
+def first_active_frame(span: FloatArray) -> int:
+    """The first frame at 10 Hz within `span` (2,), in seconds."""
+    return int(span[0] * WARPING_RATE)
 
 
 def _by_features(query: Descriptors, columns: list[list[FloatArray]]) -> FloatArray:

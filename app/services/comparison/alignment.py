@@ -10,10 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.analysis.descriptors.alignment import align, peaks
+from app.analysis.descriptors.frame_features import WARPING_RATE
 from app.kinedex_error import KinedexError, Place
 from app.motion.frame.body_frame import body_length
 from app.numerics.arrays import FloatArray, IntArray
-from app.search.example.distances import FEATURES
+from app.search.example.distances import ACTIVE, FEATURES, active_frames, first_active_frame
 from app.services import fields
 from app.services.find.query import cut, describe
 from app.services.find.query_source import QuerySource
@@ -93,11 +94,14 @@ def _side(lib: Library, part: Part) -> _Side:
     clip = ready_clip(lib, part.clip_id)
     _check_length(clip, part)
     source = QuerySource(part.clip_id, start=part.start, end=part.end)
-    features = describe(lib, source, (FEATURES,)).arrays[FEATURES]
+    arrays = describe(lib, source, (FEATURES, ACTIVE)).arrays
+    # Search compares active parts too, so both have the same distance.
+    features, span = active_frames(arrays[FEATURES], arrays[ACTIVE]), arrays[ACTIVE]
     motion = load_motion(lib, clip)
     first = math.floor((part.start or 0.0) * motion.frame_rate + _ROUNDING)
     size = body_length(motion if source.is_whole else cut(motion, part.start, part.end))
-    return _Side(np.asarray(features), first / motion.frame_rate, size)
+    idle = first_active_frame(span) / WARPING_RATE
+    return _Side(np.asarray(features), first / motion.frame_rate + idle, size)
 
 
 def _check_length(clip: ClipRecord, part: Part) -> None:

@@ -19,7 +19,7 @@ from app.search.composed.examples import (
     typical_distances,
 )
 from app.search.composed.surprise import Part
-from app.search.example.distances import EPSILON, FEATURES, RHO, Loader
+from app.search.example.distances import ACTIVE, EPSILON, FEATURES, RHO, Loader
 from app.search.example.methods import LEARNED, Method
 from app.search.index.filters import as_filter
 from app.search.index.vector_index import VECTOR
@@ -32,7 +32,7 @@ from app.services.find.query import QueryDescriptors, describe
 from app.services.find.word_parts import WordParts
 from app.services.library.library import Library
 
-_NAMES = (VECTOR, FEATURES, RHO, EPSILON)
+_NAMES = (VECTOR, FEATURES, ACTIVE, RHO, EPSILON)
 _WORDS = Part()
 """The words together: weight 1, and for something. A word with a minus leaves clips out."""
 
