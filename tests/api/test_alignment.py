@@ -24,8 +24,8 @@ def test_two_clips_are_aligned_step_by_step(
     assert found["joints"] == [role.value for role in SUN_ROLES]
     assert len(found["path"]) == len(found["differences"])
     assert {len(step) for step in found["differences"]} == {13}
-    assert found["path"][0] == [0, 0]
-    assert found["path"][-1] == pytest.approx([walk["duration"], wave["duration"]], abs=0.15)
+    assert found["path"][0] == pytest.approx([0, 0], abs=0.5)  # active parts are aligned
+    assert found["path"][-1] == pytest.approx([walk["duration"], wave["duration"]], abs=0.5)
     columns = zip(*found["differences"], strict=True)
     means = [sum(column) / len(found["path"]) for column in columns]
     assert found["mean_differences"] == pytest.approx(means, abs=1e-3)

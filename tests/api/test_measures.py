@@ -13,7 +13,8 @@ from tests.api.conftest import assert_problem
 
 @pytest.fixture
 def clips(demo: httpx2.Client) -> list[dict[str, Any]]:
-    items: list[dict[str, Any]] = demo.get("/v1/clips", params={"limit": 1000}).json()["items"]
+    asked = {"state": "ready", "limit": 1000}
+    items: list[dict[str, Any]] = demo.get("/v1/clips", params=asked).json()["items"]
     return items
 
 

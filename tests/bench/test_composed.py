@@ -99,7 +99,7 @@ class Table:
             (share, average_precision(-np.arange(len(relevance)), relevance))
         )
 
-    def print(self, title: str, chance: float) -> dict[str, float]:
+    def show(self, title: str, chance: float) -> dict[str, float]:
         """The first column by row."""
         FIGURES.print(f"\n{title} (chance {chance:.3f})")
         for name, values in self._rows.items():
@@ -167,7 +167,7 @@ def test_two_examples_of_a_task_by_different_persons_find_it_better_than_one(rea
         if len(shares) == TRIALS:
             break
     title = "The task of two examples by different persons: P@10, MAP"
-    found = table.print(title, float(np.mean(shares)))
+    found = table.show(title, float(np.mean(shares)))
     assert found["both"] > found["one example"]
 
 
@@ -195,7 +195,7 @@ def test_a_word_narrows_an_example(real: Clips) -> None:
         if len(shares) == TRIALS:
             break
     title = "The task of an example in the style of a word: P@R, MAP"
-    means = table.print(title, float(np.mean(shares)))
+    means = table.show(title, float(np.mean(shares)))
     together = means.pop("the example and the word")
     assert together > 2 * max(means.values())
 
@@ -217,7 +217,7 @@ def test_a_wrong_hit_that_is_marked_as_less_like_this_makes_room(real: Clips) ->
         table.add("less like its first wrong hit", real.relevance(relevant, (one,), (wrong[0],)))
         shares.append(relevant.mean())
     title = "The task of an example with wrong hits among 20: P@10, MAP"
-    found = table.print(title, float(np.mean(shares)))
+    found = table.show(title, float(np.mean(shares)))
     assert found["less like its first wrong hit"] > found["the example"]
 
 

@@ -192,7 +192,7 @@ def test_every_end_of_a_job_is_an_event(store: Store, add_clip: AddClip) -> None
         jobs.enqueue(tx, NewJob(JobKind.INGEST, clip_id=clip.id))
         outcomes.remove_clip(tx, clip.id)
     assert _last_event(store, webhook_id)["type"] == "ingest.canceled"
-    assert len(EVENTS) == 9
+    assert len(EVENTS) == 12
 
 
 def test_an_event_is_stored_only_if_its_job_ends(store: Store) -> None:

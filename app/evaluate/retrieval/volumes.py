@@ -107,7 +107,8 @@ def _compression(lib: Library, measured: Sequence[ClipRecord]) -> Compression:
             )
         frames += [len(epsilon) for epsilon in epsilons.values()]
         factor_bytes += sum(array.nbytes for part in (rhos, epsilons) for array in part.values())
-        position_bytes += sum(array.nbytes for array in joints.values())
+        # volumes are of the active parts, and are compared with the positions in these
+        position_bytes += sum(joints[one][: len(part)].nbytes for one, part in epsilons.items())
     return Compression(
         len(frames), sum(frames), compression_ratio(frames), factor_bytes / position_bytes
     )

@@ -10,7 +10,7 @@ from app.analysis.descriptors.frame_features import features_at_10hz, frame_feat
 from app.motion.frame.body_frame import body_track
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray
-from app.search.example.distances import FEATURES, distances_to
+from app.search.example.distances import ACTIVE, FEATURES, distances_to
 from app.search.example.methods import Method
 from tests.bodies import motion_of, move_joint, standing, turned_about_y, walking, waving
 
@@ -23,7 +23,9 @@ def features_of(body: FloatArray, rate: float = 30.0) -> FloatArray:
 
 def test_the_distance_is_that_of_the_method_dtw() -> None:
     one, other = features_of(walking()), features_of(waving(3.0))
-    (found,) = distances_to({FEATURES: one}, ["b"], Method.DTW, lambda ids, name: {"b": other})
+    whole = np.array([0.0, 1e3])
+    query, stored = {FEATURES: one, ACTIVE: whole}, {FEATURES: other, ACTIVE: whole}
+    (found,) = distances_to(query, ["b"], Method.DTW, lambda ids, name: {"b": stored[name]})
     assert align(one, other).distance == pytest.approx(found, rel=1e-5)
 
 

@@ -122,8 +122,10 @@ def test_a_word_with_a_minus_leaves_clips_out_and_an_example_against_pushes_them
     assert "kick" not in {task for _, task in _labels(without)}
     assert len(without.items) == COUNT - 4
     against = _like(clip_of("ada", "walk"), against=clip_of("bruno", "kick"))
-    pushed = _labels(find_by_parts(ready_library, ComposedQuery(against, limit=100)))
-    plain = _labels(find_by_parts(ready_library, ComposedQuery(walk, limit=100)))
+    pushed, plain = (
+        _labels(find_by_parts(ready_library, ComposedQuery(some, method=Method.VECTOR, limit=100)))
+        for some in (against, walk)
+    )
     assert len(pushed) == COUNT - 2
     assert pushed.index(("ada", "kick")) > plain.index(("ada", "kick"))
     assert pushed[0] == plain[0]
