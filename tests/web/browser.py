@@ -29,7 +29,7 @@ WIDE = (1280, 800)
 Scheme = Literal["light", "dark"]
 LOOKS: list[tuple[Scheme, tuple[int, int]]] = [("light", WIDE), ("dark", (390, 844))]
 """Each theme, and each kind of layout: a page that is sound in both of these is sound."""
-WAIT_MS = 30_000.0
+WAIT_MS = 120_000.0
 """For a state that a page gets to; how fast is no matter of these tests."""
 expect.set_options(timeout=WAIT_MS)
 

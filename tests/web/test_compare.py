@@ -16,8 +16,6 @@ from tests.web.accessibility import serious_faults
 from tests.web.browser import LOOKS, Scheme, opened
 from tests.web.pixels import colors_of
 
-pytestmark = pytest.mark.slow
-
 
 @dataclass(frozen=True)
 class Pair:
@@ -34,7 +32,11 @@ class Pair:
     @property
     def seconds(self) -> float:
         """The length of the path by the common time."""
-        return sum(self.alignment["path"][-1]) / 2
+        return self.common(self.alignment["path"][-1])
+
+    def common(self, times: list[float]) -> float:
+        """The time from the start of the path, which begins where the clips begin to move."""
+        return (sum(times) - sum(self.alignment["path"][0])) / 2
 
     def worst(self) -> str:
         means = self.alignment["mean_differences"]
@@ -121,7 +123,7 @@ def test_a_click_on_the_curve_or_on_a_peak_goes_there(page: Page, pair: Pair) ->
     peak = pair.alignment["peaks"][0]
     page.get_by_role("region", name="Where they differ most").get_by_role("button").first.click()
     expect(_slider(page)).to_have_attribute(
-        "aria-valuetext", re.compile(f"^{sum(peak['times']) / 2:.2f} of")
+        "aria-valuetext", re.compile(f"^{pair.common(peak['times']):.2f} of")
     )
     assert _query(page)["joint"] == [peak["joint"]]
     plot = page.locator(".curve .u-over")

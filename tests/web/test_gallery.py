@@ -17,8 +17,6 @@ from tests.live import NET_S, Live, serve, wait_until
 from tests.web.accessibility import serious_faults
 from tests.web.browser import LOOKS, Scheme, opened
 
-pytestmark = pytest.mark.slow
-
 MANY = 10_000
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 320 180"><path d="M0 90H320"/></svg>'
 

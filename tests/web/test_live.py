@@ -14,8 +14,6 @@ from tests.web.accessibility import serious_faults
 from tests.web.browser import LOOKS, Scheme, opened
 from tests.zip_archives import zip_archive
 
-pytestmark = pytest.mark.slow
-
 
 def test_the_library_and_its_jobs_are_shown(page: Page) -> None:
     page.goto("/live")

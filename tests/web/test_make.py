@@ -14,8 +14,6 @@ from tests.web.accessibility import serious_faults
 from tests.web.browser import LOOKS, Scheme, opened
 from tests.web.pixels import colors_of
 
-pytestmark = pytest.mark.slow
-
 LEFT_OUT = ("bruno", "kick")
 
 

@@ -13,8 +13,6 @@ from tests.web.accessibility import serious_faults
 from tests.web.browser import LOOKS, Scheme, opened
 from tests.web.pixels import colors_of
 
-pytestmark = pytest.mark.slow
-
 STORED = 12
 MANY = 100_000
 MANY_POINTS = f"""

@@ -15,8 +15,6 @@ from tests.web.accessibility import serious_faults
 from tests.web.browser import LOOKS, Scheme, opened
 from tests.web.pixels import colors_of
 
-pytestmark = pytest.mark.slow
-
 
 @pytest.fixture(scope="module")
 def own(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:

@@ -17,8 +17,6 @@ from tests.live import Live, serve
 from tests.web.accessibility import serious_faults
 from tests.web.browser import LOOKS, Scheme, opened
 
-pytestmark = pytest.mark.slow
-
 NAMED = ["", *(name for name in PAGE_NAMES if name not in {"clips", "compare", "study"})]
 """The pages that the navigation lists, in its order."""
 

@@ -15,8 +15,6 @@ from tests.live import Live, serve, wait_until
 from tests.web.accessibility import serious_faults
 from tests.web.browser import LOOKS, Scheme, opened
 
-pytestmark = pytest.mark.slow
-
 FRAME_TIME = re.compile(r"Frame Time: ([\d.]+)")
 FASTER = 3
 """So much faster than real that the frame rate is doubted."""
