@@ -20,21 +20,23 @@ describe("work on many items", () => {
 });
 
 describe("turns", () => {
-  it("let the newest go first, and leave out what is not wanted any more", async () => {
+  it("let the newest group go first, in its order, and leave out what is not wanted", async () => {
     const turns = new Turns(1);
     const order: string[] = [];
     let finish = (): void => undefined;
     const signal = new AbortController().signal;
     const first = turns.take(() => new Promise<void>((done) => (finish = done)), signal);
     const left = new AbortController();
-    const rest = ["a", "b", "c"].map((name) =>
+    const take = (name: string): Promise<void> =>
       turns
         .take(async () => void order.push(name), name === "b" ? left.signal : signal)
-        .catch(() => undefined),
-    );
+        .catch(() => undefined);
+    const older = ["a", "b", "c"].map(take);
+    await Promise.resolve();
+    const newer = ["d", "e"].map(take);
     left.abort();
     finish();
-    await Promise.all([first, ...rest]);
-    expect(order).toEqual(["c", "a"]);
+    await Promise.all([first, ...older, ...newer]);
+    expect(order).toEqual(["d", "e", "a", "c"]);
   });
 });

@@ -19,16 +19,20 @@ export async function forEachOf<T>(
   return failures;
 }
 
-/** At most `limit` of the given works run at a time; the newest goes first, as readers scroll on. */
+/**
+ * At most `limit` of the given works run at a time. Those that are given together, without a wait
+ * between them, run in their order; the newest of such groups goes first, as readers scroll on.
+ */
 export class Turns {
   #running = 0;
-  readonly #waiting: (() => void)[] = [];
+  readonly #waiting: (() => void)[][] = [];
+  #group: (() => void)[] | null = null;
 
   constructor(readonly limit: number) {}
 
   async take<T>(work: () => Promise<T>, signal: AbortSignal): Promise<T> {
     if (this.#running >= this.limit) {
-      await new Promise<void>((go) => this.#waiting.push(go));
+      await new Promise<void>((go) => this.#wait(go));
     }
     this.#running += 1;
     try {
@@ -36,7 +40,25 @@ export class Turns {
       return await work();
     } finally {
       this.#running -= 1;
-      this.#waiting.pop()?.();
+      this.#next()?.();
     }
+  }
+
+  #wait(go: () => void): void {
+    if (!this.#group) {
+      this.#waiting.push((this.#group = []));
+      queueMicrotask(() => (this.#group = null));
+    }
+    this.#group.push(go);
+  }
+
+  #next(): (() => void) | undefined {
+    const newest = this.#waiting.at(-1);
+    const next = newest?.shift();
+    if (newest?.length === 0) {
+      this.#waiting.pop();
+      if (newest === this.#group) this.#group = null;
+    }
+    return next;
   }
 }
