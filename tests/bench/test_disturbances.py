@@ -73,8 +73,8 @@ DISTURBANCES: dict[str, Disturb] = {
 FLOORS = {
     "as stored": 1.0,
     "jitter .5 degrees": 0.97,
-    "jitter 1 degree": 0.9,
-    "2 s idle before": 0.9,
+    "jitter 1 degree": 0.85,
+    "2 s idle before": 0.85,
 }
 """Smallest share of originals that come first by the method fused."""
 
