@@ -8,11 +8,7 @@ from collections.abc import Iterator
 import pytest
 from hypothesis import HealthCheck, settings
 
-from app.demo import demo_clips
-from tests.live import Live, serve
-
-ACTORS = ("ada", "bruno")
-TASKS = ("walk", "wave", "kick")
+from tests.live import Live, serve, serve_demo
 
 # WordNet takes seconds to load, in every fit of every library; its own test sets this to true.
 os.environ.setdefault("KINEDEX_WORDNET", "false")
@@ -31,13 +27,9 @@ def idle_service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
 
 @pytest.fixture(scope="session")
 def demo_service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
-    """API and worker with 12 ready clips (2 actors, 3 tasks, 2 takes) and fitted models."""
-    with serve(tmp_path_factory.mktemp("demo") / "data", worker=True) as live:
-        clips = demo_clips(ACTORS, TASKS, takes=2)
-        answers = [live.upload(clip).json() for clip in clips]
-        for answer in answers:
-            assert live.wait_for_job(answer["job"]["id"])["state"] == "succeeded"
-        with live.client() as client:
-            job = client.post("/v1/models/fit").json()["job"]
-        assert live.wait_for_job(job["id"])["state"] == "succeeded"
+    """API and worker with 12 ready clips (2 actors, 3 tasks, 2 takes) and fitted models.
+
+    Tests may add to it.
+    """
+    with serve_demo(tmp_path_factory.mktemp("demo") / "data") as live:
         yield live

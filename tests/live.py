@@ -16,7 +16,11 @@ from typing import Any
 
 import httpx2
 
-from app.demo import DemoClip
+from app.demo import DemoClip, demo_clips
+
+ACTORS = ("ada", "bruno")
+TASKS = ("walk", "wave", "kick")
+"""Of the demo library, with two takes each."""
 
 NET_S = 300.0
 """Seconds. No wait of a test is so long, but on a machine that does much else at the same time."""
@@ -124,3 +128,16 @@ def _free_port() -> int:
         probe.bind(("127.0.0.1", 0))
         port: int = probe.getsockname()[1]
         return port
+
+
+@contextmanager
+def serve_demo(data_dir: Path) -> Iterator[Live]:
+    """API and worker with 12 ready clips (2 actors, 3 tasks, 2 takes) and fitted models."""
+    with serve(data_dir, worker=True) as live:
+        answers = [live.upload(clip).json() for clip in demo_clips(ACTORS, TASKS, takes=2)]
+        for answer in answers:
+            assert live.wait_for_job(answer["job"]["id"])["state"] == "succeeded"
+        with live.client() as client:
+            job = client.post("/v1/models/fit").json()["job"]
+        assert live.wait_for_job(job["id"])["state"] == "succeeded"
+        yield live

@@ -1,10 +1,10 @@
-"""How soon the gallery shows a library, how smoothly it scrolls, and what is sent for it.
+"""How soon gallery and map show a library, how smoothly they move, and what is sent for it.
 
 Run: pytest -m bench -s tests/bench/test_pages.py
 Libraries of copies of demo clips, the API as its own process, and Chromium without a GPU. Targets:
 the first page of 500 clips within 1 s, that of 100,000 within 2 s, and no gap over 200 ms between
-two frames while 10,000 clips are scrolled through. The figures are printed and not asserted, since
-they depend on what else the machine does.
+two frames while 10,000 clips are scrolled through; the map draws 100,000 points in 1 to 3 s. The
+figures are printed and not asserted, since they depend on what else the machine does.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from tests.web.browser import launch, opened, why_not
 
 FIGURES = Section(
     "pages",
-    "The gallery of large libraries",
+    "The gallery and the map of large libraries",
     trials="five openings of each library with an empty cache; one way through 10,000 clips",
 )
 
@@ -44,6 +44,9 @@ pytestmark = pytest.mark.bench
 
 OPENINGS = 5
 SCROLLED = 10_000
+MAPPED = 100_000
+DRAGS = 60
+"""Steps of the pointer that shifts the map."""
 PICTURES = 300
 """Clips of the largest library that have a picture: those of its first page."""
 SHOWN = """() => {
@@ -177,6 +180,30 @@ def test_scrolling(browser: Browser, tmp_path: Path, real: tuple[Sample, ...]) -
         f"{SCROLLED:>7,} clips scrolled through by {turns} turns of the wheel: longest gap between"
         f" frames {gaps[-1]:.0f} ms (target 200), 99 % within {gaps[int(0.99 * len(gaps))]:.0f} ms,"
         f" median {median(gaps):.0f} ms; {cards} cards in the page; load {os.getloadavg()[0]:.1f}"
+    )
+
+
+def test_the_map(browser: Browser, tmp_path: Path, real: tuple[Sample, ...]) -> None:
+    with library(tmp_path, MAPPED, real) as live, opened(browser, live.url) as page:
+        times = []
+        for _ in range(OPENINGS):
+            page.goto("/map?space=vectors")
+            page.locator(f"[data-drawn='{MAPPED}']").wait_for()
+            times.append(float(page.evaluate("performance.now()")) / 1000)
+        box = page.locator("[data-drawn] canvas").bounding_box()
+        assert box is not None
+        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        page.evaluate(WATCH)
+        page.mouse.move(x, y)
+        page.mouse.down()
+        for step in range(DRAGS):
+            page.mouse.move(x + 4 * step, y + 2 * step)
+        page.mouse.up()
+        gaps = sorted(page.evaluate("gaps"))
+    FIGURES.print(
+        f"{MAPPED:>7,} points of the map: drawn after {median(times):.2f} s (at most"
+        f" {max(times):.2f}; target 3); while it is shifted, frames are {median(gaps):.0f} ms"
+        f" apart, at most {gaps[-1]:.0f}; load {os.getloadavg()[0]:.1f}"
     )
 
 

@@ -7,12 +7,21 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from tests.live import Live
+from tests.live import Live, serve_demo
 from tests.web.browser import launch, opened, why_not
 
 
 @pytest.fixture(scope="session")
+def demo_service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
+    """A demo library of the pages' own: other tests add clips and models to theirs."""
+    with serve_demo(tmp_path_factory.mktemp("demo-pages") / "data") as live:
+        yield live
+
+
+@pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
+    """The browser. While it is there, an event loop runs in this thread: other modules use their
+    own, so it ends with the module."""
     reason = why_not()
     if reason is not None:
         pytest.skip(reason)

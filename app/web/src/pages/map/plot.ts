@@ -1,4 +1,7 @@
-/** The points of the map, drawn with three.js: all of them, and the marked ones over them. */
+/**
+ * The points of the map, drawn with three.js: all of them, and the marked ones over them. Not with
+ * regl-scatterplot: its regl writes its drawing code by `new Function`, which our policy forbids.
+ */
 import {
   BufferAttribute,
   BufferGeometry,
