@@ -2,9 +2,9 @@
 
 Arrays (float32 if nothing else is said; n frames at 30 Hz, m at 10 Hz; a frames of the active
 part at 30 Hz): role_positions (n, 13, 3) meters, world; features_10hz (m, 82); active_span (2,)
-seconds; motion_vector (128,);
-wide_motion_vector (512,); msv_lambda (1,), msv_rho (13,), msv_epsilon (a,), msv_convergence
-(i, 2), the error and the change of lambda after each of i iterations; motion_sample (1250,);
+seconds; motion_vector (128,); wide_motion_vector (512,); msv_lambda (1,), msv_rho (13,),
+msv_epsilon (a,), msv_convergence (i, 2), the error and the change of lambda after each of
+i iterations; motion_sample (1250,);
 angle_sample (642,); motion_shape (1378,); symbol_statistics (131,); window_vectors_* (w, 125)
 float16 and window_spans_* (w, 2) seconds, for 1s, 2s and 4s; beat_times (b,) float64
 seconds, beat_facts (3,) float64 (see `rhythm`); keypose_frames (k,)
@@ -111,6 +111,7 @@ def analyze(
 
 
 def _of_start(motion: Motion) -> tuple[Caution, ...]:
+    """The doubt about a pose at the start, if there is one."""
     posed = posed_frames(motion)
     if not posed:
         return ()

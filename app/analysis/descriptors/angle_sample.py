@@ -19,8 +19,8 @@ from app.numerics.arrays import FloatArray
 def angle_sample(track: BodyTrack, cycles: list[tuple[float, float]] | None = None) -> FloatArray:
     """(642,) float32: 32 x 20 angles (radians), net turn, mean speed, as in the motion sample.
 
-    cycles: `exact_gait_cycles(track)`, if the caller has them. The track is smoothed at the clip's
-    own rate. So its angles can be sampled at 32 phases of a gait cycle without another filter.
+    cycles: `exact_gait_cycles(track)`, if the caller has them. The track is a smooth one
+    (`smooth_track`), so its angles can be sampled at 32 phases of a gait cycle without a filter.
     """
     angles = joint_angles(track.positions, track.rate)
     cycles = exact_gait_cycles(track) if cycles is None else cycles

@@ -15,10 +15,9 @@ from app.analysis.descriptors.active_part import active_part
 from app.analysis.descriptors.motion_volume import cross_correlations, decompose, warping_distances
 from app.motion.frame.body_frame import smooth_track
 from app.numerics.tensors.rank1 import Rank1
-from app.search.example.by_example import rank_by_example
-from app.search.example.distances import ACTIVE, EPSILON, FEATURES, RHO, Descriptors
+from app.search.example.by_example import COMPARED, rank_by_example
+from app.search.example.distances import Descriptors
 from app.search.example.methods import Method
-from app.search.index.vector_index import VECTOR
 from app.services.library.library import Library
 from app.services.library.stored_motion import load_motion
 from app.store.clips import arrays
@@ -44,7 +43,7 @@ def by_method(lib: Library, method: Method, filter: ClipFilter | None) -> Ranker
 
 def _query(lib: Library, clip: ClipRecord) -> Descriptors:
     with lib.store.read() as tx:
-        return arrays.get_named(tx, clip.id, (VECTOR, FEATURES, ACTIVE, RHO, EPSILON))
+        return arrays.get_named(tx, clip.id, COMPARED)
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,9 +14,9 @@ import numpy as np
 from app.motion.motion import Motion
 
 MIN_JUMP_RATIO = 2.0
-"""The step from the pose to the motion is longer than the longest other step by this factor. Of 42
-real clips by CMU, all but one have a larger factor; of 97 by Bandai-Namco, none has more than
-1.05."""
+"""The step from the pose to the motion is longer than the longest other step by this factor. The
+start is found in 41 of 42 real BVH clips by CMU, in 5 of 7 of another conversion, and in none of
+447 by Bandai-Namco, which have no such pose."""
 
 MIN_FRAMES = 10
 """The fewest frames. With fewer, the first step cannot be compared with the others."""

@@ -13,8 +13,8 @@ is the size of the noise. The chosen cut-off leaves a residual of that size, so 
 the motion as much as it lets noise pass.
 
 The residuals are computed from one spectrum instead of a filter run for each cut-off, which takes
-2 ms instead of 120 ms for 5 s at 120 Hz. Shapes: (frames, ...) in and out, in any unit; rates in
-Hz.
+0.4 ms instead of 320 ms for 5 s of 13 joints at 30 Hz. Shapes: (frames, ...) in and out, in any
+unit; rates in Hz.
 """
 
 from __future__ import annotations

@@ -7,7 +7,15 @@ from functools import partial
 import numpy as np
 
 from app.numerics.arrays import FloatArray, IntArray
-from app.search.example.distances import Descriptors, Loader, distances_to
+from app.search.example.distances import (
+    ACTIVE,
+    EPSILON,
+    FEATURES,
+    RHO,
+    Descriptors,
+    Loader,
+    distances_to,
+)
 from app.search.example.fusion import SHORTLIST, FusedDistance
 from app.search.example.methods import Method
 from app.search.example.reranking import ShortlistRanking
@@ -17,6 +25,9 @@ from app.search.ranking.cursor import Anchor
 from app.search.ranking.lower_bounds import LowerBounds
 from app.search.ranking.ranking import IdArray, Page, Ranked, Ranking
 from app.store.clips.filter import ClipFilter
+
+COMPARED = (VECTOR, FEATURES, ACTIVE, RHO, EPSILON)
+"""Names of the arrays of a query that the methods compare, but for learned metrics."""
 
 SCALES = {
     Method.FUSED: 5.0,

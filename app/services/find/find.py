@@ -8,12 +8,11 @@ from collections.abc import Callable
 from functools import partial
 
 from app.models.metric.learned_metric import INPUTS
-from app.search.example.by_example import SCALES, rank_by_example
-from app.search.example.distances import ACTIVE, EPSILON, FEATURES, RHO
+from app.search.example.by_example import COMPARED, SCALES, rank_by_example
+from app.search.example.distances import FEATURES
 from app.search.example.methods import LEARNED, Method
 from app.search.index.filters import as_filter
 from app.search.index.labels import LabelView
-from app.search.index.vector_index import VECTOR
 from app.search.ranking import cursor as cursors
 from app.search.ranking.ranking import Ranked, score
 from app.services import fields
@@ -31,8 +30,6 @@ from app.services.find.queries import (
 from app.services.find.query import describe
 from app.services.library.library import Library
 from app.store.clips.filter import ClipFilter
-
-_NAMES = (VECTOR, FEATURES, ACTIVE, RHO, EPSILON)
 
 
 def find_motion(lib: Library, query: MotionQuery) -> Hits:
@@ -103,7 +100,7 @@ def _search(query: MotionQuery, method: Method) -> _Search:
 def _by_example(
     lib: Library, query: MotionQuery, method: Method, clip_filter: ClipFilter
 ) -> HitPage:
-    described = describe(lib, query.source, _NAMES)
+    described = describe(lib, query.source, COMPARED)
     arrays = described.arrays
     # An upload has no id: the cursor identifies it by a hash of its descriptors.
     content = hashlib.sha256(arrays[FEATURES].tobytes()).hexdigest()

@@ -19,10 +19,10 @@ from app.search.composed.examples import (
     typical_distances,
 )
 from app.search.composed.surprise import Part
-from app.search.example.distances import ACTIVE, EPSILON, FEATURES, RHO, Loader
+from app.search.example.by_example import COMPARED
+from app.search.example.distances import FEATURES, Loader
 from app.search.example.methods import LEARNED, Method
 from app.search.index.filters import as_filter
-from app.search.index.vector_index import VECTOR
 from app.search.ranking import cursor as cursors
 from app.services.find.by_metric import MetricSpace, content_digest
 from app.services.find.hits import Hit, PartScore
@@ -32,7 +32,6 @@ from app.services.find.query import QueryDescriptors, describe
 from app.services.find.word_parts import WordParts
 from app.services.library.library import Library
 
-_NAMES = (VECTOR, FEATURES, ACTIVE, RHO, EPSILON)
 _WORDS = Part()
 """The words together: weight 1, and for something. A word with a minus leaves clips out."""
 
@@ -53,7 +52,7 @@ class QueryParts:
         self._method = Method(query.method)
         self._rows = lib.index.state[1]
         is_learned = self._method in LEARNED
-        names = INPUTS if is_learned else _NAMES
+        names = INPUTS if is_learned else COMPARED
         self._described = [_described(lib, one, names) for one in query.examples]
         self._metric = MetricSpace.of(lib, self._method) if is_learned else None
         labels = self._rows.labels
