@@ -65,6 +65,19 @@ def test_the_map_names_every_clip(demo: httpx2.Client, space: str) -> None:
     for item in reply["items"]:
         shown = ("person", "task", "words", "license", "source", "metadata", "duration")
         assert all(item[name] == clips[item["clip_id"]][name] for name in shown)
+    columns = demo.get("/v1/space/columns", params={"space": space, "dimensions": 3}).json()
+    assert columns["clip_ids"] == [item["clip_id"] for item in reply["items"]]
+    for index, item in enumerate(reply["items"]):
+        place = [axis[index] for axis in columns["points"]]
+        assert place == pytest.approx(item["point"], rel=1e-4)
+        for name, column in (columns["labels"] | columns["metadata"]).items():
+            code = column["codes"][index]
+            value = column["values"][code] if code >= 0 else None
+            assert value == {**item["metadata"], **item}.get(name), name
+        words = columns["words"]
+        assert words["values"][words["codes"][index]] == sorted(item["words"])
+        for name, values in columns["measures"].items():
+            assert values[index] == (item[name] and pytest.approx(item[name], rel=1e-4)), name
     only = demo.get("/v1/space", params={"space": space, "task": "walk"}).json()
     assert {item["task"] for item in only["items"]} == {"walk"}
     assert demo.get("/v1/space", params={"dimensions": 4}).status_code == 422

@@ -18,15 +18,17 @@ MANY = 100_000
 MANY_POINTS = f"""
 const own = fetch;
 window.fetch = async (request) => {{
-  if (!request.url?.includes("/v1/space")) return own(request);
-  const whole = await (await own("/v1/space?limit=1")).json();
-  const items = Array.from({{length: {MANY}}}, (_, n) => ({{
-    ...whole.items[0],
-    clip_id: `clip_${{n}}`,
-    task: `task ${{n % 40}}`,
-    point: [n % 317, Math.floor(n / 317)],
-  }}));
-  return Response.json({{...whole, total: {MANY}, items}});
+  if (!request.url?.includes("/v1/space/columns")) return own(request);
+  const whole = await (await own("/v1/space/columns?limit=1")).json();
+  const column = (of) => Array.from({{length: {MANY}}}, (_, n) => of(n));
+  return Response.json({{
+    ...whole,
+    total: {MANY},
+    clip_ids: column((n) => `clip_${{n}}`),
+    points: [column((n) => n % 317), column((n) => Math.floor(n / 317))],
+    labels: {{task: {{values: Array.from({{length: 40}}, (_, n) => `task ${{n}}`),
+                      codes: column((n) => n % 40)}}}},
+  }});
 }};
 """
 """A map of many clips, made in the page: to send it takes longer than to draw it."""

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+import numpy as np
 from pydantic import Field
 
 from app.api.schemas.base import ENERGY, SPEED, TEMPO, TRAVEL, Metadata, Outgoing
 from app.api.schemas.filters import Filter
+from app.numerics.arrays import FloatArray
+from app.numerics.rounding import rounded
 from app.search.index.filters import parse_filter
-from app.services.find.map import MAX_POINTS, Map, SpaceName
+from app.search.index.label_columns import label_columns, metadata_columns, word_column
+from app.services.find.map import MAX_POINTS, Map, Placed, SpaceName
 from app.store.clips.filter import ClipFilter
 from app.store.clips.measures import MEASURES
+
+DIGITS = 5
+"""Significant digits of the numbers of a map in columns: no screen shows more."""
 
 
 class SpaceQuery(Filter):
@@ -54,8 +61,8 @@ class MapPoint(Outgoing):
     point: list[float] = Field(description="2 or 3 coordinates.")
 
 
-class SpaceMap(Outgoing):
-    """Clips as points; `next` is always null."""
+class _Drawn(Outgoing):
+    """What every form of a map says of itself."""
 
     space: str
     dimensions: int
@@ -63,10 +70,15 @@ class SpaceMap(Outgoing):
         ge=0, le=1, description="Share of the variance of the space that the map shows."
     )
     total: int = Field(
-        description="Number of clips that pass the filter; may be more than `items`."
+        description="Number of clips that pass the filter; may be more than are shown."
     )
     library_version: int
     model: str | None = Field(description="Id of the model of the symbol space, else null.")
+
+
+class SpaceMap(_Drawn):
+    """Clips as points; `next` is always null."""
+
     items: list[MapPoint]
     next: str | None = None
 
@@ -98,3 +110,81 @@ class SpaceMap(Outgoing):
                 for clip, point in zip(drawn.clips, points, strict=True)
             ],
         )
+
+
+CODES = "For each clip the place of its value in `values`; -1 without one."
+
+
+class LabelCodes(Outgoing):
+    """A label of every clip of a map."""
+
+    values: list[str] = Field(description="The values that occur, each once.")
+    codes: list[int] = Field(description=CODES)
+
+
+class WordCodes(Outgoing):
+    """The words of every clip of a map."""
+
+    values: list[list[str]] = Field(description="The sets of words that occur, each once.")
+    codes: list[int] = Field(description="For each clip the place of its words in `values`.")
+
+
+class MetadataCodes(Outgoing):
+    """The values of a key of the metadata of every clip of a map."""
+
+    values: list[str | int | float | bool] = Field(description="The values that occur, each once.")
+    codes: list[int] = Field(description=CODES)
+
+
+class SpaceColumns(_Drawn):
+    """Clips as points, as columns: the same place of each list is the same clip."""
+
+    clip_ids: list[str]
+    points: list[list[float]] = Field(
+        description="One list for each dimension. Rounded to 5 significant digits."
+    )
+    labels: dict[str, LabelCodes] = Field(description="Of person, task, source and license.")
+    words: WordCodes
+    measures: dict[str, list[float | None]] = Field(
+        description=f"Of {', '.join(MEASURES)}; null without one. Rounded to 5 significant digits."
+    )
+    metadata: dict[str, MetadataCodes] = Field(description="Of each key that a clip has.")
+
+    @classmethod
+    def of(cls, query: SpaceQuery, placed: Placed) -> SpaceColumns:
+        """The map as the API shows it."""
+        labels, numbers = placed.labels, placed.numbers
+        coded = label_columns(labels, numbers)
+        words = word_column(labels, numbers)
+        metadata = metadata_columns(labels, numbers)
+        return cls(
+            space=query.space,
+            dimensions=query.dimensions,
+            variance_kept=min(placed.kept, 1.0),
+            total=placed.total,
+            library_version=placed.library_version,
+            model=placed.model,
+            clip_ids=placed.ids,
+            points=rounded(placed.points, DIGITS).T.tolist(),
+            labels={
+                name: LabelCodes(values=list(column.values), codes=column.codes.tolist())
+                for name, column in coded.items()
+            },
+            words=WordCodes(
+                values=[list(some) for some in words.values], codes=words.codes.tolist()
+            ),
+            measures={
+                name: _or_null(rounded(labels.measured(name)[numbers], DIGITS)) for name in MEASURES
+            },
+            metadata={
+                key: MetadataCodes(values=list(column.values), codes=column.codes.tolist())
+                for key, column in metadata.items()
+            },
+        )
+
+
+def _or_null(values: FloatArray) -> list[float | None]:
+    """The numbers, None for NaN."""
+    found = values.astype(object)
+    found[np.isnan(values)] = None
+    return list(found)

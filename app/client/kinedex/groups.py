@@ -80,6 +80,7 @@ class Search(Group[SenderType]):
     parts = CallMethod(calls_search.search_parts)
     pose = CallMethod(calls_poses.search_pose)
     space = CallMethod(calls_space.get_space)
+    space_columns = CallMethod(calls_space.get_space_columns)
 
 
 class Models(Group[SenderType]):

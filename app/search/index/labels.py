@@ -40,6 +40,11 @@ class Coded:
         """The label of an entry."""
         return self._labels[int(self.column.view()[number])]
 
+    @property
+    def labels(self) -> tuple[str | None, ...]:
+        """All labels that clips have or had, by code."""
+        return tuple(self._labels)
+
     def codes(self, labels: Iterable[str]) -> list[int]:
         """The codes of the labels; labels that no clip ever had are left out."""
         return [self._code_of[label] for label in labels if label in self._code_of]
@@ -125,7 +130,7 @@ class LabelView:
         """
         mask = self.alive.copy()
         for name, least, most in clip_filter.ranges():
-            values = self._measured(name)
+            values = self.measured(name)
             mask &= values >= (-np.inf if least is None else least)
             mask &= values <= (np.inf if most is None else most)
         for name, codes in self.labels.codes(clip_filter).items():
@@ -138,8 +143,8 @@ class LabelView:
             mask[self._numbers_of(clip_id)] = False
         return mask
 
-    def _measured(self, name: str) -> FloatArray:
-        """(n,) a measure of each clip."""
+    def measured(self, name: str) -> FloatArray:
+        """(n,) a measure of each clip, NaN for clips without it."""
         return self.durations if name == "duration" else self.measures[:, FOUND.index(name)]
 
     def word_sets(self) -> tuple[IntArray, tuple[frozenset[str], ...]]:
@@ -168,7 +173,7 @@ class Labels:
         self.number_of: dict[str, int] = {}
         self.words = CodedWords()
         self.metadata = MetadataColumns()
-        self._named = {name: Coded() for name in NAMED}
+        self.named = {name: Coded() for name in NAMED}
         self._ids = Column(object)
         self._durations = Column(np.float64)
         self._measures = Column(np.float64, (len(FOUND),))
@@ -192,7 +197,7 @@ class Labels:
         self._alive.extend(np.ones(len(clips), dtype=bool))
         self.words.extend(clip.words for clip in clips)
         self.metadata.extend(clip.metadata for clip in clips)
-        for name, coded in self._named.items():
+        for name, coded in self.named.items():
             coded.extend(getattr(clip, name) for clip in clips)
         self.number_of.update((clip.id, first + i) for i, clip in enumerate(clips))
 
@@ -212,7 +217,7 @@ class Labels:
         prefix = "not_" if negated else ""
         codes = {
             name: coded.codes_below(values) if name == "folder" else coded.codes(values)
-            for name, coded in self._named.items()
+            for name, coded in self.named.items()
             if (values := getattr(clip_filter, prefix + name))
         }
         words = getattr(clip_filter, prefix + "word")
@@ -220,7 +225,7 @@ class Labels:
 
     def clip_at(self, number: int, array: NDArray[Any] | None) -> IndexedClip:
         """A clip with the labels with which it was added, and an array."""
-        named = {name: coded.at(number) for name, coded in self._named.items()}
+        named = {name: coded.at(number) for name, coded in self.named.items()}
         return IndexedClip(
             id=self._ids.view()[number],
             is_ready=True,
@@ -234,7 +239,7 @@ class Labels:
 
     def view(self) -> LabelView:
         """The labels at this moment."""
-        coded = {name: coded.column.view() for name, coded in self._named.items()}
+        coded = {name: coded.column.view() for name, coded in self.named.items()}
         return LabelView(
             ids=self._ids.view(),
             alive=self._alive.view(),

@@ -10,11 +10,11 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from app.numerics.arrays import BoolArray
+from app.numerics.arrays import BoolArray, IntArray
 from app.search.index.column import Column
 from app.store.clips.filter import MetadataCondition
 from app.store.clips.index_feed import IndexedMetadata
-from app.store.clips.metadata_values import MetadataValue, ValueKind, as_text, kind_of
+from app.store.clips.metadata_values import MetadataValue, ValueKind, as_text, from_text, kind_of
 
 
 class MetadataColumns:
@@ -42,6 +42,14 @@ class MetadataColumns:
         """The metadata of a clip."""
         metadata: IndexedMetadata = self._of_clip.view()[number]
         return metadata
+
+    def coded(self, numbers: IntArray) -> dict[str, tuple[IntArray, tuple[MetadataValue, ...]]]:
+        """For each key, the code (n,) of the value of each of the clips `numbers` (n,), -1 without
+        one, and the values by code. Keys that none of the clips has are left out."""
+        count = int(numbers.max(initial=-1)) + 1
+        coded = {key: column.coded(count) for key, column in tuple(self._by_key.items())}
+        chosen = {key: (codes[numbers], values) for key, (codes, values) in coded.items()}
+        return {key: found for key, found in chosen.items() if (found[0] >= 0).any()}
 
     def mask(self, condition: MetadataCondition, count: int) -> BoolArray:
         """(count,) whether each of the first clips meets a condition."""
@@ -76,10 +84,21 @@ class _KeyColumn:
             self._code_of[kind, text] = code
         return code
 
+    def coded(self, count: int) -> tuple[IntArray, tuple[MetadataValue, ...]]:
+        """(count,) the code of the value of each of the first clips, or -1; the values by code."""
+        numbers, codes = self._first(count)
+        found = np.full(count, -1, dtype=np.int64)
+        found[numbers] = codes
+        return found, tuple(from_text(kind, text) for kind, text in tuple(self._code_of))
+
     def mark(self, condition: MetadataCondition, mask: BoolArray) -> None:
         """Set the entries of `mask` of the clips whose value passes."""
-        numbers = self._numbers.view()
-        numbers = numbers[: np.searchsorted(numbers, len(mask))]
-        codes = self._codes.view()[: len(numbers)]
+        numbers, codes = self._first(len(mask))
         passes = np.array([condition.accepts(*value) for value in tuple(self._values)])
         mask[numbers[passes[codes]]] = True
+
+    def _first(self, count: int) -> tuple[IntArray, IntArray]:
+        """Of the first `count` clips, the numbers of those that have the key, and their codes."""
+        numbers = self._numbers.view()
+        numbers = numbers[: np.searchsorted(numbers, count)]
+        return numbers, self._codes.view()[: len(numbers)]

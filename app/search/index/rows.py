@@ -104,6 +104,17 @@ class RowsView:
             first, start = first + len(block), stop
         return distances
 
+    def vectors(self, rows: IntArray) -> FloatArray:
+        """(k, width) float32 copies of the vectors of `rows` (k,), in any order."""
+        width = self.blocks[0].vectors.shape[1] if self.blocks else 0
+        found = np.empty((len(rows), width), dtype=np.float32)
+        first = 0
+        for block in self.blocks:
+            own = np.flatnonzero((rows >= first) & (rows < first + len(block)))
+            found[own] = block.vectors[rows[own] - first]
+            first += len(block)
+        return found
+
 
 class Rows:
     """The rows of an index; clips are added and removed."""

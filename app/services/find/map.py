@@ -15,9 +15,8 @@ import numpy as np
 
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.principal_axes import PrincipalAxes, principal_axes
-from app.search.index import usable_arrays
 from app.search.index.labels import LabelView
-from app.search.index.vector_index import VECTOR
+from app.search.index.rows import RowsView
 from app.services import fields
 from app.services.find.by_words import clip_points
 from app.services.library.library import Library
@@ -33,13 +32,32 @@ SpaceName = Literal["symbols", "vectors"]
 
 
 @dataclass(frozen=True, slots=True)
-class Map:
-    """The points of n clips.
+class Placed:
+    """The points of n clips of the index.
 
-    points: (n, dimensions), one row for each clip; kept: share of the space's variance that the
-    map shows, 0..1; total: number of ready clips that pass the filter, of which n are shown;
-    model: id of the model that computed them, None for vectors.
+    labels: of the clips of the index; numbers: (n,) the clips' numbers there; points: (n,
+    dimensions); kept: share of the space's variance that the map shows, 0..1; total: number of
+    ready clips that pass the filter, of which n are shown; model: id of the model that computed
+    the points, None for vectors.
     """
+
+    labels: LabelView
+    numbers: IntArray
+    points: FloatArray
+    kept: float
+    total: int
+    library_version: int
+    model: str | None
+
+    @property
+    def ids(self) -> list[str]:
+        """The ids of the clips."""
+        return [str(clip_id) for clip_id in self.labels.ids[self.numbers]]
+
+
+@dataclass(frozen=True, slots=True)
+class Map:
+    """The points of n clips, with what is known of the clips; see `Placed`."""
 
     clips: tuple[ClipRecord, ...]
     points: FloatArray
@@ -56,7 +74,31 @@ def draw_map(
     clip_filter: ClipFilter | None = None,
     limit: int = 10_000,
 ) -> Map:
-    """The map of the clips that pass a filter.
+    """The map of the clips that pass a filter, see `place_clips`."""
+    placed = place_clips(lib, space, dimensions, clip_filter, limit)
+    ids = placed.ids
+    with lib.store.read() as tx:
+        records = clips.get_many(tx, ids)
+    # A clip may have been deleted since the index caught up.
+    rows = [row for row, clip_id in enumerate(ids) if clip_id in records]
+    return Map(
+        clips=tuple(records[ids[row]] for row in rows),
+        points=placed.points[rows],
+        kept=placed.kept,
+        total=placed.total,
+        library_version=placed.library_version,
+        model=placed.model,
+    )
+
+
+def place_clips(
+    lib: Library,
+    space: str = "symbols",
+    dimensions: int = 2,
+    clip_filter: ClipFilter | None = None,
+    limit: int = 10_000,
+) -> Placed:
+    """The points of the clips that pass a filter.
 
     dimensions: 2 or 3; limit: largest number of points. If more clips pass, the map shows `limit`
     of them, evenly spaced in the order of ids. Raises BadField, and ModelNotFitted for space
@@ -68,22 +110,20 @@ def draw_map(
         raise fields.bad_field("dimensions", "must be 2 or 3")
     if not 1 <= limit <= MAX_POINTS:
         raise fields.bad_field("limit", f"must be from 1 to {MAX_POINTS}")
-    version = lib.index.catch_up(lib.store)
-    labels = lib.index.state[1].labels
+    lib.index.catch_up(lib.store)
+    version, rows = lib.index.state
+    labels = rows.labels
     matching = np.flatnonzero(labels.mask(clip_filter or ClipFilter()))
     # By id, and not by row: then the same clips are selected after the index was built again.
     by_id = matching[np.argsort(labels.ids[matching].astype(str), kind="stable")]
     selected = by_id[_evenly(len(by_id), limit)]
-    ids, points, axes, model = _space_points(lib, space, labels, selected, dimensions)
-    shown = axes.project(points) if len(ids) else np.zeros((0, dimensions))
-    with lib.store.read() as tx:
-        records = clips.get_many(tx, ids)
-    # A clip may have been deleted since the index caught up.
-    rows = [row for row, clip_id in enumerate(ids) if clip_id in records]
-    return Map(
-        clips=tuple(records[ids[row]] for row in rows),
-        points=_padded(shown[rows], dimensions),
-        kept=_variance_share(points - axes.center, shown) if len(ids) else 0.0,
+    numbers, points, axes, model = _space_points(lib, space, rows, selected, dimensions)
+    shown = axes.project(points) if len(numbers) else np.zeros((0, dimensions))
+    return Placed(
+        labels=labels,
+        numbers=numbers,
+        points=_padded(shown, dimensions),
+        kept=_variance_share(points - axes.center, shown) if len(numbers) else 0.0,
         total=len(matching),
         library_version=version,
         model=model,
@@ -91,26 +131,23 @@ def draw_map(
 
 
 def _space_points(
-    lib: Library, space: str, labels: LabelView, selected: IntArray, dimensions: int
-) -> tuple[list[str], FloatArray, PrincipalAxes, str | None]:
+    lib: Library, space: str, rows: RowsView, selected: IntArray, dimensions: int
+) -> tuple[IntArray, FloatArray, PrincipalAxes, str | None]:
     """The points of the selected clips that have one.
 
-    Returns ids (n), points (n, d), the axes of the map, and the id of the model (None for vectors).
+    Returns the clips' numbers (n,), points (n, d), the axes of the map, and the id of the model
+    (None for vectors).
     """
     if space == "symbols":
         fitted = lib.models.words(lib.store)
         axes = principal_axes(fitted.model.space.points, dimensions)
-        model_rows = clip_points(lib, fitted, labels)
-        rows = selected[model_rows.has_row[selected]]
-        return [str(i) for i in labels.ids[rows]], model_rows.values[rows], axes, fitted.id
-    ids = [str(i) for i in labels.ids[selected]]
-    with lib.store.read() as tx:
-        vectors = usable_arrays.get_many(tx, ids, VECTOR)
-    usable = [clip_id for clip_id in ids if clip_id in vectors]
-    points = np.array([vectors[clip_id] for clip_id in usable], dtype=np.float64)
-    if not usable:
-        return [], points, PrincipalAxes(np.zeros(0), np.zeros((0, 0))), None
-    return usable, points, principal_axes(points, dimensions), None
+        model_rows = clip_points(lib, fitted, rows.labels)
+        placed = selected[model_rows.has_row[selected]]
+        return placed, model_rows.values[placed], axes, fitted.id
+    points = rows.vectors(selected).astype(np.float64)
+    if not len(selected):
+        return selected, points, PrincipalAxes(np.zeros(0), np.zeros((0, 0))), None
+    return selected, points, principal_axes(points, dimensions), None
 
 
 def _evenly(count: int, limit: int) -> IntArray:

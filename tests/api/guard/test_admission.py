@@ -21,6 +21,7 @@ HEAVY = {
     "/v1/recognize",
     "/v1/synthesize",
     "/v1/space",
+    "/v1/space/columns",
     "/v1/clips/{clip_id}/motion",
     "/v1/clips/{clip_id}/alignment",
     "/v1/clips/{clip_id}/export",

@@ -47,6 +47,15 @@ def test_a_new_clip_is_placed_without_a_fit(lib: Library, some_demo_clips: list[
     assert len(space.draw_map(lib, "vectors").clips) == 3
 
 
+@pytest.mark.parametrize("name", space.SPACES)
+def test_points_need_no_records(ready_library: Library, name: str) -> None:
+    """The clips placed from the index alone are those of the map, in the same places."""
+    whole, placed = space.draw_map(ready_library, name), space.place_clips(ready_library, name)
+    assert placed.ids == [clip.id for clip in whole.clips]
+    assert np.array_equal(placed.points, whole.points)
+    assert (placed.total, placed.model) == (whole.total, whole.model)
+
+
 def test_an_empty_library_has_an_empty_map(lib: Library) -> None:
     assert space.draw_map(lib, "vectors").points.shape == (0, 2)
 

@@ -4,7 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from kinedex.records import Page, Record
+from kinedex.records import Array, Page, Record
+
+
+@dataclass(frozen=True, slots=True)
+class LabelCodes(Record):
+    """A label of every clip of a map.
+
+    values: The values that occur, each once.
+    codes: For each clip the place of its value in `values`; -1 without one.
+    """
+
+    values: list[str]
+    codes: list[int]
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,11 +55,63 @@ class MapPoint(Record):
 
 
 @dataclass(frozen=True, slots=True)
+class MetadataCodes(Record):
+    """The values of a key of the metadata of every clip of a map.
+
+    values: The values that occur, each once.
+    codes: For each clip the place of its value in `values`; -1 without one.
+    """
+
+    values: list[str | int | float | bool]
+    codes: list[int]
+
+
+@dataclass(frozen=True, slots=True)
+class WordCodes(Record):
+    """The words of every clip of a map.
+
+    values: The sets of words that occur, each once.
+    codes: For each clip the place of its words in `values`.
+    """
+
+    values: list[list[str]]
+    codes: list[int]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SpaceColumns(Record):
+    """Clips as points, as columns: the same place of each list is the same clip.
+
+    variance_kept: Share of the variance of the space that the map shows.
+    total: Number of clips that pass the filter; may be more than are shown.
+    model: Id of the model of the symbol space, else null.
+    points: One list for each dimension. Rounded to 5 significant digits.
+    labels: Of person, task, source and license.
+    measures: Of duration, frame_rate, joints, travel, speed, energy, tempo; null without one.
+    Rounded to 5 significant digits.
+    metadata: Of each key that a clip has.
+    """
+
+    space: str
+    dimensions: int
+    variance_kept: float
+    total: int
+    library_version: int
+    model: str | None
+    clip_ids: list[str]
+    points: Array
+    labels: dict[str, LabelCodes]
+    words: WordCodes
+    measures: dict[str, list[float | None]]
+    metadata: dict[str, MetadataCodes]
+
+
+@dataclass(frozen=True, slots=True)
 class SpaceMap(Page[MapPoint]):
     """Clips as points; `next` is always null.
 
     variance_kept: Share of the variance of the space that the map shows.
-    total: Number of clips that pass the filter; may be more than `items`.
+    total: Number of clips that pass the filter; may be more than are shown.
     model: Id of the model of the symbol space, else null.
     """
 

@@ -1,9 +1,6 @@
 /** Which color each clip of the map gets from a label, a measure or its metadata. */
-import type { Schemas } from "$/api/client";
 import { MEASURE_NAMES, titleOf } from "$/motion/measures";
-
-export type MapClip = Schemas["MapPoint"];
-type Value = string | number | boolean | null;
+import { labelOf, type Columns } from "./columns";
 
 export const LABELS = {
   task: "Task",
@@ -37,61 +34,76 @@ export interface Range {
 }
 
 /** What the points can be colored by: names for the address, with titles. */
-export function choices(clips: readonly MapClip[]): readonly (readonly [string, string])[] {
-  const keys = new Set(clips.flatMap(({ metadata }) => Object.keys(metadata)));
-  const own = [...keys].sort().map((key) => [META + key, key] as const);
+export function choices({ metadata }: Columns): readonly (readonly [string, string])[] {
+  const own = Object.keys(metadata)
+    .sort()
+    .map((key) => [META + key, key] as const);
   const measures = MEASURE_NAMES.map((name) => [name, titleOf(name)] as const);
   return [...Object.entries(LABELS), ...measures, ...own];
 }
 
-export function coloring(clips: readonly MapClip[], by: string): Classes | Range {
-  const values = by === "word" ? commonWords(clips) : clips.map((clip) => valueOf(clip, by));
-  const numbers = values.filter((value) => value !== null);
-  const areNumbers = numbers.length > 0 && numbers.every((value) => typeof value === "number");
-  return areNumbers ? ranged(values as (number | null)[]) : classed(values);
+export function coloring(columns: Columns, by: string): Classes | Range {
+  const measured = columns.measures[by];
+  if (measured) return ranged(measured);
+  if (by === "word") return classed(commonWords(columns));
+  const key = by.startsWith(META) ? by.slice(META.length) : "";
+  const { values, codes } = columns.metadata[key] ?? labelOf(columns, by);
+  const areNumbers = values.length > 0 && values.every((value) => typeof value === "number");
+  if (areNumbers) return ranged(codes.map((code) => (values[code] as number | undefined) ?? null));
+  const count = columns.clip_ids.length;
+  const all = codes.length === count ? codes : new Array<number>(count).fill(-1);
+  return classed({ values: values.map(String), codes: all });
 }
 
-function valueOf(clip: MapClip, by: string): Value {
-  if (by.startsWith(META)) return clip.metadata[by.slice(META.length)] ?? null;
-  if (by === "person" || by === "task" || by === "source" || by === "license") return clip[by];
-  const measure = MEASURE_NAMES.find((name) => name === by);
-  return measure ? clip[measure] : null;
+interface Coded {
+  readonly values: readonly string[];
+  /** For each clip the place of its value in `values`; -1 without one. */
+  readonly codes: readonly number[];
 }
 
 /** Of each clip's words the one that most clips carry. */
-function commonWords(clips: readonly MapClip[]): (string | null)[] {
-  const counts = counted(clips.flatMap(({ words }) => words));
-  const often = (word: string): number => counts.get(word) ?? 0;
-  return clips.map(({ words }) =>
-    words.reduce<string | null>(
-      (best, word) => (best === null || often(word) > often(best) ? word : best),
-      null,
+function commonWords({ words: { values: sets, codes } }: Columns): Coded {
+  const often = counted(codes, sets.length);
+  const counts = new Map<string, number>();
+  sets.forEach((words, set) => {
+    for (const word of words) counts.set(word, (counts.get(word) ?? 0) + (often[set] ?? 0));
+  });
+  const values = [...counts.keys()];
+  const places = new Map(values.map((word, place) => [word, place]));
+  const common = sets.map((words) =>
+    words.reduce(
+      (best, word) =>
+        best < 0 || (counts.get(word) ?? 0) > (counts.get(values[best] ?? "") ?? 0)
+          ? (places.get(word) ?? -1)
+          : best,
+      -1,
     ),
   );
+  return { values, codes: codes.map((set) => common[set] ?? -1) };
 }
 
-function counted(values: readonly string[]): Map<string, number> {
-  const counts = new Map<string, number>();
-  for (const value of values) counts.set(value, (counts.get(value) ?? 0) + 1);
+/** How many clips have each code. */
+function counted(codes: readonly number[], size: number): Uint32Array {
+  const counts = new Uint32Array(size);
+  for (const code of codes) if (code >= 0) counts[code] = (counts[code] ?? 0) + 1;
   return counts;
 }
 
-function classed(values: readonly Value[]): Classes {
-  const texts = values.map((value) => (value === null ? null : String(value)));
-  const counts = counted(texts.filter((text) => text !== null));
-  const byCount = [...counts].toSorted(
-    ([one, many], [other, few]) => few - many || one.localeCompare(other),
-  );
-  const classes = byCount.slice(0, MAX_CLASSES).map(([value, count]) => ({ value, count }));
-  const places = new Map(classes.map(({ value }, place) => [value, place]));
-  const of = Uint8Array.from(texts, (text) => (text === null ? NONE : (places.get(text) ?? OTHER)));
-  const others = byCount.slice(MAX_CLASSES).reduce((sum, [, count]) => sum + count, 0);
+function classed({ values, codes }: Coded): Classes {
+  const counts = counted(codes, values.length);
+  const byCount = values
+    .map((value, code) => ({ value, code, count: counts[code] ?? 0 }))
+    .filter(({ count }) => count > 0)
+    .sort((one, other) => other.count - one.count || one.value.localeCompare(other.value));
+  const classes = byCount.slice(0, MAX_CLASSES);
+  const places = new Uint8Array(values.length).fill(OTHER);
+  classes.forEach(({ code }, place) => (places[code] = place));
   return {
     kind: "classes",
-    of,
-    classes,
-    others,
-    none: texts.filter((text) => text === null).length,
+    of: Uint8Array.from(codes, (code) => places[code] ?? NONE),
+    classes: classes.map(({ value, count }) => ({ value, count })),
+    others: byCount.slice(MAX_CLASSES).reduce((sum, { count }) => sum + count, 0),
+    none: codes.length - counts.reduce((sum, count) => sum + count, 0),
   };
 }
 

@@ -1,6 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { readLasso, writeLasso } from "./address";
-import { choices, coloring, NONE, ofClass, OTHER, type MapClip } from "./colors";
+import { choices, coloring, NONE, ofClass, OTHER } from "./colors";
+import { labeled, pointsOf, without, type Columns } from "./columns";
 import { inside } from "./lasso";
 import {
   boundsOf,
@@ -13,8 +14,24 @@ import {
   zoomed,
 } from "./lens";
 
-const clip = (some: Partial<MapClip>): MapClip =>
-  ({ words: [], metadata: {}, person: null, task: null, duration: null, ...some }) as MapClip;
+const columns = (some: Partial<Columns>): Columns => ({
+  space: "vectors",
+  dimensions: 2,
+  variance_kept: 1,
+  total: 3,
+  library_version: 1,
+  model: null,
+  clip_ids: ["a", "b", "c"],
+  points: [
+    [0, 1, 2],
+    [3, 4, 5],
+  ],
+  labels: {},
+  words: { values: [[]], codes: [0, 0, 0] },
+  measures: {},
+  metadata: {},
+  ...some,
+});
 const POINTS = Float32Array.from([0, 0, 4, 0, 4, 2, 1, 1]);
 const SIZE = { width: 200, height: 100 };
 
@@ -91,10 +108,16 @@ describe("the lens", () => {
 
 describe("the colors", () => {
   it("are classes by how many clips have a value; the rarer share one", () => {
-    const clips = Array.from({ length: 24 }, (_, place) =>
-      clip({ task: place < 3 ? "walk" : place < 23 ? `task ${place % 11}` : null }),
+    const tasks = Array.from({ length: 24 }, (_, place) =>
+      place < 3 ? "walk" : place < 23 ? `task ${place % 11}` : null,
     );
-    const found = coloring(clips, "task");
+    const values = [...new Set(tasks.filter((task) => task !== null))].toReversed();
+    const codes = tasks.map((task) => (task === null ? -1 : values.indexOf(task)));
+    const clips = tasks.map(String);
+    const found = coloring(
+      columns({ clip_ids: clips, labels: { task: { values, codes } } }),
+      "task",
+    );
     if (found.kind !== "classes") throw new Error("expected classes");
     expect(found.classes[0]).toEqual({ value: "walk", count: 3 });
     expect([found.others, found.none]).toEqual([2, 1]);
@@ -103,16 +126,54 @@ describe("the colors", () => {
     expect(ofClass(found, "walk")).toEqual([0, 1, 2]);
   });
 
-  it("are a range of numbers, also of metadata", () => {
-    const clips = [clip({ metadata: { age: 20 } }), clip({ metadata: { age: 40 } }), clip({})];
-    expect(choices(clips).map(([name]) => name)).toContain("meta.age");
-    const found = coloring(clips, "meta.age");
+  it("are a range of numbers, of measures and of metadata", () => {
+    const some = columns({
+      measures: { speed: [1, null, 3] },
+      metadata: { age: { values: [20, 40], codes: [0, 1, -1] } },
+    });
+    expect(choices(some).map(([name]) => name)).toContain("meta.age");
+    const found = coloring(some, "meta.age");
     expect(found).toMatchObject({ kind: "range", least: 20, most: 40 });
     expect([...found.of]).toEqual([0, 1, NaN]);
+    expect([...coloring(some, "speed").of]).toEqual([0, NaN, 1]);
   });
 
   it("take of several words the one that most clips carry", () => {
-    const found = coloring([clip({ words: ["slow", "kick"] }), clip({ words: ["kick"] })], "word");
-    expect(found).toMatchObject({ classes: [{ value: "kick", count: 2 }] });
+    const words = { values: [["kick", "slow"], ["kick"], []], codes: [0, 1, 2] };
+    const found = coloring(columns({ words }), "word");
+    expect(found).toMatchObject({ classes: [{ value: "kick", count: 2 }], none: 1 });
+  });
+
+  it("are none for what no clip has", () => {
+    expect([...coloring(columns({}), "meta.nobody").of]).toEqual([NONE, NONE, NONE]);
+  });
+});
+
+describe("the columns", () => {
+  const some = columns({
+    labels: { task: { values: ["walk"], codes: [-1, 0, 0] } },
+    words: { values: [["slow"], []], codes: [1, 0, 1] },
+    measures: { speed: [1, 2, null] },
+    metadata: { age: { values: [20], codes: [-1, -1, 0] } },
+  });
+
+  it("are points, and what is known of a clip", () => {
+    expect([...pointsOf(some)]).toEqual([0, 3, 1, 4, 2, 5]);
+    expect(labeled(some, 1)).toEqual({
+      id: "b",
+      person: null,
+      task: "walk",
+      words: ["slow"],
+      metadata: {},
+    });
+    expect(labeled(some, 2).metadata).toEqual({ age: 20 });
+  });
+
+  it("leave out clips that are hidden", () => {
+    const left = without(some, new Set(["b"]));
+    expect(left.clip_ids).toEqual(["a", "c"]);
+    expect([...pointsOf(left)]).toEqual([0, 3, 2, 5]);
+    expect(labeled(left, 1)).toEqual(labeled(some, 2));
+    expect(left.measures["speed"]).toEqual([1, null]);
   });
 });
