@@ -72,7 +72,17 @@ CLIP = ClipRecord(
     changed_version=4,
 )
 JOB = JobRecord(
-    "job_1", JobKind.INGEST, JobState.QUEUED, 0.0, None, NOW, None, None, {"files": []}, None
+    "job_1",
+    JobKind.INGEST,
+    JobState.QUEUED,
+    "clip_1",
+    0.0,
+    None,
+    NOW,
+    None,
+    None,
+    {"files": []},
+    None,
 )
 
 

@@ -107,6 +107,24 @@ def test_an_uploaded_file_is_one_more_example(
     ]
 
 
+def test_hits_are_not_like_an_uploaded_file_that_is_against(
+    demo: httpx2.Client, take: DemoClip, walk: dict[str, Any]
+) -> None:
+    """The task of the file is the best without it, and the last with it."""
+    files = {"file": ("q.bvh", take.content)}
+    asked = {"words": json.dumps([take.task, "kick"]), "limit": "100"}
+    with_it, without = (
+        demo.post("/v1/search", files=files, data={**asked, "against": against}).json()["items"]
+        for against in ("true", "false")
+    )
+    assert without[0]["clip"]["task"] == take.task
+    assert with_it[0]["clip"]["task"] == "kick"
+    assert with_it[0]["parts"][0]["against"] is True
+    alone = demo.post("/v1/search", files=files, data={"against": "true"})
+    assert alone.status_code == 422
+    assert alone.headers["content-type"] == "application/problem+json"
+
+
 @pytest.mark.parametrize(
     ("changes", "location"),
     [

@@ -88,6 +88,7 @@ def test_both_play_along_the_path(page: Page, pair: Pair) -> None:
     _open(page, pair.address)
     expect(_slider(page)).to_have_attribute("aria-valuetext", _of(pair.seconds))
     assert colors_of(_player(page).locator("canvas")) > 100
+    expect(_slider(page).locator(".curve")).to_have_attribute("d", re.compile(r"^M0\.0 .*L"))
     page.keyboard.press("End")
     ends = pair.alignment["path"][-1]
     expect(page.get_by_text(f"A {ends[0]:.2f} s, B {ends[1]:.2f} s.")).to_be_visible()

@@ -20,7 +20,9 @@ def test_the_library_and_its_jobs_are_shown(page: Page) -> None:
     library = page.get_by_role("region", name="The library")
     expect(library.get_by_role("link", name=re.compile("clips ready"))).to_contain_text("12")
     jobs = page.get_by_role("list", name="Jobs").get_by_role("listitem")
-    expect(jobs.first).to_be_visible()
+    expect(jobs.filter(has_text="Analysis").get_by_role("link").first).to_have_attribute(
+        "href", re.compile(r"^/clips/clip_\w+$")
+    )
     page.get_by_role("button", name="Fits").click()
     expect(jobs.filter(has_text="Analysis")).to_have_count(0)
     expect(jobs.filter(has_text="Fit of the models").first).to_contain_text("succeeded")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from urllib.parse import parse_qs, urlsplit
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
@@ -35,7 +36,10 @@ def test_a_motion_that_nobody_recorded_plays_beside_a_real_one(browser: Browser,
     person, task = LEFT_OUT
     with opened(browser, gap.url) as page:
         page.goto("/make")
-        page.get_by_label("Person").select_option(person)
+        page.get_by_role("region", name="Persons").get_by_role("button", name=person).click()
+        tasks = page.get_by_role("region", name="Tasks")
+        expect(tasks.get_by_role("button", name=task)).to_be_visible()
+        assert parse_qs(urlsplit(page.url).query) == {"person": [person]}
         group = page.locator("optgroup[label='Never recorded']")
         expect(group.locator("option")).to_have_text([task])
         page.get_by_label("Task").select_option(task)

@@ -201,7 +201,7 @@ def test_hits_become_parts_that_are_for_and_against(page: Page) -> None:
     expect(chips(page)).to_have_count(2)
     expect(page).to_have_url(re.compile(r"ex=clip_\w+&ex=-clip_\w+"))
     expect(
-        page.get_by_role("status").filter(has_text=re.compile(r"fused · \d+ ms"))
+        page.get_by_role("status").filter(has_text=re.compile(r"Fused · \d+ ms"))
     ).to_be_visible()
     page.get_by_role("button", name="What each part says").click()
     said = hits(page).first.get_by_role("list", name="What each part says").get_by_role("listitem")

@@ -119,7 +119,7 @@ class ComposedSearch(_ComposedOptions):
 
 
 class ComposedSearchForm(_ComposedOptions):
-    """The same with an uploaded file (never stored) as one more example, which hits are like."""
+    """The same with an uploaded file (never stored) as one more example."""
 
     examples: Json[_Examples] = Field(default=[], description=f"JSON. {_EXAMPLES}")
     words: _FormWords = Field(
@@ -128,6 +128,8 @@ class ComposedSearchForm(_ComposedOptions):
     filter: Json[Filter] | None = Field(None, description='JSON, as {"task": ["walk", "run"]}.')
     start: Seconds | None = Field(None, description="Start of the part of the file, seconds.")
     end: Seconds | None = Field(None, description="End of the part of the file, seconds.")
+    weight: _Weight = 1.0
+    against: bool = Field(False, description="Whether hits must not be like the file.")
     unit: Unit = None
     frame_rate: FileFrameRate = None
     up_axis: UpAxis | None = None
@@ -149,7 +151,7 @@ class ComposedSearchForm(_ComposedOptions):
                 roles=self.roles,
                 stack=self.stack,
             )
-            examples.append(Example(FILE, source))
+            examples.append(Example(FILE, source, self.weight, self.against))
         return self._query(examples, self.words)
 
 

@@ -33,6 +33,10 @@ class Job(Outgoing):
     id: str
     kind: JobKind
     state: JobState
+    clip_id: str | None = Field(
+        description="The clip that the job analyzes. null for other work, and after the clip was"
+        " deleted."
+    )
     progress: float = Field(ge=0, le=1)
     detail: str | None = Field(description="The current step, as a text for people.")
     created_at: datetime

@@ -134,7 +134,6 @@ def as_claimed(row: RowMapping) -> ClaimedJob:
     return ClaimedJob(
         job=job_repository.to_record(row),
         lease=Lease(row["id"], row["owner"], row["attempts"]),
-        clip_id=row["clip_id"],
         file_sha256=row["file_sha256"],
         payload=row["payload"],
         max_attempts=row["max_attempts"],

@@ -43,6 +43,7 @@ OPEN_STATES = (JobState.QUEUED, JobState.PROCESSING)
 class JobRecord:
     """The row of a job without its arguments: the fields that clients see.
 
+    clip_id: the clip that an ingest job analyzes, None for other jobs and after its deletion;
     progress: completed share, 0..1; detail: the progress as a text; result: JSON whose members
     depend on the kind; error: an RFC 9457 problem.
     """
@@ -50,6 +51,7 @@ class JobRecord:
     id: str
     kind: JobKind
     state: JobState
+    clip_id: str | None
     progress: float
     detail: str | None
     created_at: datetime
@@ -104,7 +106,6 @@ class ClaimedJob:
 
     job: JobRecord
     lease: Lease
-    clip_id: str | None
     file_sha256: str | None
     payload: dict[str, Any]
     max_attempts: int
@@ -112,3 +113,8 @@ class ClaimedJob:
     kills: int
     worker_deaths: int
     cancel_requested: bool
+
+    @property
+    def clip_id(self) -> str | None:
+        """The clip that the job analyzes."""
+        return self.job.clip_id

@@ -108,6 +108,7 @@ def to_record(row: RowMapping) -> JobRecord:
         id=row["id"],
         kind=JobKind(row["kind"]),
         state=JobState(row["state"]),
+        clip_id=row["clip_id"],
         progress=row["progress"],
         detail=row["detail"],
         created_at=row["created_at"],

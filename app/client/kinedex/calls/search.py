@@ -162,6 +162,8 @@ def search_parts(
     words: Sequence[str] | None = None,
     start: float | None = None,
     end: float | None = None,
+    weight: float | None = None,
+    against: bool | None = None,
     unit: str | None = None,
     frame_rate: float | None = None,
     up_axis: Literal["x", "y", "z", "-x", "-y", "-z"] | None = None,
@@ -188,6 +190,8 @@ def search_parts(
         carry it. Default: [].
     start: Start of the part of the file, seconds.
     end: End of the part of the file, seconds.
+    weight: How much it counts, relative to the others. Default: 1.0.
+    against: Whether hits must not be like the file. Default: False.
     unit: m, dm, cm, mm, in, ft, cmu (unit of the CMU files), or meters per unit.
     frame_rate: It replaces the frame rate that the file declares.
     up_axis: The axis of the file that points up. Without it, the axis that the file says is
@@ -219,6 +223,8 @@ def search_parts(
             words=words,
             start=start,
             end=end,
+            weight=weight,
+            against=against,
             unit=unit,
             frame_rate=frame_rate,
             up_axis=up_axis,
@@ -236,6 +242,8 @@ def search_parts(
             words=words,
             start=start,
             end=end,
+            weight=weight,
+            against=against,
             unit=unit,
             frame_rate=frame_rate,
             up_axis=up_axis,

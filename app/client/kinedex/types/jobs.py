@@ -16,6 +16,8 @@ from kinedex.types.problem import Problem
 class Job(Record):
     """Work in the background.
 
+    clip_id: The clip that the job analyzes. null for other work, and after the clip was
+    deleted.
     detail: The current step, as a text for people.
     result: The result. Its members depend on `kind`. An import has the number of files by
     outcome (`total`, `new`, `updated`, `unchanged`, `conflicting`, `failed`, `skipped`,
@@ -28,6 +30,7 @@ class Job(Record):
     id: str
     kind: JobKind
     state: JobState
+    clip_id: str | None
     progress: float
     detail: str | None
     created_at: datetime

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { curvePath, namesOf, posePath } from "./marks";
+import { curvePath, namesOf, posePath, retimed } from "./marks";
 
 describe("pictures of the time line", () => {
   it("a curve fills its room", () => {
@@ -24,5 +24,32 @@ describe("pictures of the time line", () => {
       0,
     ]);
     expect(posePath(pose, [[4, 10]], 20)).toBe("M0.0 0.0L5.0 -20.0");
+  });
+});
+
+describe("marks on another clock", () => {
+  it("are those of the part, where the player shows them", () => {
+    const marks = {
+      keyposes: [0, 1, 3].map((time) => ({ time, pose: [], isNamed: false })),
+      beats: [0.5, 1.5],
+      segments: [
+        { start: 0, end: 0.9, label: "before" },
+        { start: 0.5, end: 2, label: "within" },
+      ],
+      energy: Array.from({ length: 40 }, (_, frame) => frame),
+      energyRate: 10,
+    };
+    // The player shows seconds 1 to 3 of the clip at half the speed.
+    const found = retimed(marks, {
+      seconds: 4,
+      isShown: (own) => own >= 1 && own <= 3,
+      timeOf: (own) => 2 * (own - 1),
+      ownAt: (time) => 1 + time / 2,
+    });
+    expect(found.keyposes.map(({ time }) => time)).toEqual([0, 4]);
+    expect(found.beats).toEqual([1]);
+    expect(found.segments).toEqual([{ start: -1, end: 2, label: "within" }]);
+    expect(found.energy).toHaveLength(4 * found.energyRate);
+    expect([found.energy[0], found.energy[60]]).toEqual([10, 20]);
   });
 });

@@ -49,6 +49,44 @@ export async function marksOf(clipId: string, signal: AbortSignal): Promise<Mark
   };
 }
 
+/** Another clock: between the times of a clip and those of a player. */
+export interface Clock {
+  /** Of the player. */
+  readonly seconds: number;
+  /** Whether the player shows this time of the clip. */
+  readonly isShown: (own: number) => boolean;
+  readonly timeOf: (own: number) => number;
+  readonly ownAt: (time: number) => number;
+}
+
+/** Frames a second of a curve on another clock. */
+const CURVE_RATE = 30;
+
+/** The marks of a clip that a player plays by another clock, or in part. */
+export function retimed(marks: Marks, { seconds, isShown, timeOf, ownAt }: Clock): Marks {
+  const moved = (span: Span): Span => ({
+    ...span,
+    start: timeOf(span.start),
+    end: timeOf(span.end),
+  });
+  const within = (spans: readonly Span[]): readonly Span[] =>
+    spans.filter(({ start, end }) => isShown(start) || isShown(end)).map(moved);
+  const frames = Math.max(0, Math.ceil(seconds * CURVE_RATE));
+  return {
+    keyposes: marks.keyposes
+      .filter(({ time }) => isShown(time))
+      .map((keypose) => ({ ...keypose, time: timeOf(keypose.time) })),
+    beats: marks.beats.filter(isShown).map(timeOf),
+    segments: within(marks.segments),
+    energy: Array.from(
+      { length: frames },
+      (_, frame) => marks.energy[Math.round(ownAt(frame / CURVE_RATE) * marks.energyRate)] ?? 0,
+    ),
+    energyRate: CURVE_RATE,
+    ...(marks.spans && { spans: within(marks.spans) }),
+  };
+}
+
 /** The name of a span, and where it is written. */
 export interface Name {
   readonly text: string;

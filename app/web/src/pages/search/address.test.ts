@@ -66,12 +66,17 @@ it("a file among several parts keeps its part", () => {
   expect(askedFor(read("file=a.bvh&ex=c1&start=1"))).toMatchObject({
     kind: "parts",
     name: "a.bvh",
-    body: { examples: [{ clip_id: "c1", against: false }], start: 1 },
+    body: { examples: [{ clip_id: "c1", against: false }], start: 1, against: false },
   });
+  expect(askedFor(read("file=a.bvh&less=1&q=wave"))).toMatchObject({
+    kind: "parts",
+    body: { words: ["wave"], against: true },
+  });
+  expect(isAllAgainst(read("file=a.bvh&less=1&q=-wave"))).toBe(true);
 });
 
 it("nothing is asked for where all is against something", () => {
-  for (const address of ["ex=-c1", "ex=-c1&q=-wave", "ex=-c1&ex=-c2"]) {
+  for (const address of ["ex=-c1", "ex=-c1&q=-wave", "ex=-c1&ex=-c2", "file=a.bvh&less=1"]) {
     expect(askedFor(read(address))).toBeNull();
     expect(isAllAgainst(read(address))).toBe(true);
   }

@@ -26,6 +26,12 @@ export type Scope = keyof typeof SCOPES;
 export const MODES = { default: "Regression", cca: "Correlated space" } as const;
 export type Mode = keyof typeof MODES;
 
+/** What people read of the method that an answer names. */
+export function titleOfMethod(method: string): string {
+  const titles: Readonly<Record<string, string>> = { ...METHODS, ...MODES, pose: "Pose" };
+  return titles[method] ?? method;
+}
+
 /** The methods of each scope, the default first. */
 export const METHODS_OF: Readonly<Record<Scope, readonly Method[]>> = {
   clips: Object.keys(METHODS) as Method[],
@@ -49,6 +55,8 @@ export const SEARCH = {
   ex: list(),
   /** Name of the file that is the query; an address cannot hold the file itself. */
   file: text(),
+  /** Whether hits must not be like the file. */
+  less: flag(),
   /** The part of the clip or the file, seconds. */
   start: number(null, 0, MAX_SECONDS),
   end: number(null, 0, MAX_SECONDS),
@@ -91,8 +99,10 @@ interface PartsOptions extends Options {
   readonly words: readonly string[];
   readonly method: Method;
   readonly mode: Mode;
+  /** Of the file. */
   readonly start?: number;
   readonly end?: number;
+  readonly against?: boolean;
 }
 interface ExampleOptions {
   readonly clip_id: string;
@@ -125,6 +135,7 @@ export function askedFor(values: SearchValues): Asked | null {
     return one.isAgainst ? null : { kind: "clip", body: { ...example(one), ...motion(values) } };
   }
   if (values.file) {
+    if (values.less) return null;
     const body = { ...partOf(values), ...motion(values) };
     return { kind: "file", name: values.file, body };
   }
@@ -161,12 +172,12 @@ export function withExamples(
 
 /** Whether the query has parts, and they are all against something. */
 export function isAllAgainst(values: SearchValues): boolean {
-  return examplesOf(values).length > 0 && !isForSomething(values);
+  return (examplesOf(values).length > 0 || values.file !== "") && !isForSomething(values);
 }
 
 function isForSomething(values: SearchValues): boolean {
   return (
-    values.file !== "" ||
+    (values.file !== "" && !values.less) ||
     examplesOf(values).some(({ isAgainst }) => !isAgainst) ||
     values.q.some((word) => !wordOf(word).isMinus)
   );
@@ -179,7 +190,7 @@ function severalParts(values: SearchValues, examples: readonly Example[]): Asked
     words: [...q],
     method,
     mode,
-    ...(file && partOf(values)),
+    ...(file && { ...partOf(values), against: values.less }),
     ...common(values),
   };
   return { kind: "parts", name: file, body };
@@ -233,6 +244,7 @@ const OTHER_QUERY: Partial<SearchValues> = {
   clip: "",
   ex: [],
   file: "",
+  less: false,
   start: null,
   end: null,
   pose: null,
@@ -244,7 +256,9 @@ export function query(given: Partial<SearchValues>): Partial<SearchValues> {
 }
 
 /** The changes that add words or a file to the query, or take them away. */
-export function changed(given: Pick<Partial<SearchValues>, "q" | "file">): Partial<SearchValues> {
+export function changed(
+  given: Pick<Partial<SearchValues>, "q" | "file" | "less">,
+): Partial<SearchValues> {
   return { ...OTHER_HITS, pose: null, ...given };
 }
 
