@@ -36,8 +36,8 @@ def test_a_motion_that_nobody_recorded_plays_beside_a_real_one(browser: Browser,
     person, task = LEFT_OUT
     with opened(browser, gap.url) as page:
         page.goto("/make")
-        page.get_by_role("region", name="Persons").get_by_role("button", name=person).click()
-        tasks = page.get_by_role("region", name="Tasks")
+        page.get_by_role("region", name="Whose motion").get_by_role("button", name=person).click()
+        tasks = page.get_by_role("region", name="Which motion")
         expect(tasks.get_by_role("button", name=task)).to_be_visible()
         assert parse_qs(urlsplit(page.url).query) == {"person": [person]}
         group = page.locator("optgroup[label='Never recorded']")
