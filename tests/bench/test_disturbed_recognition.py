@@ -97,8 +97,8 @@ def test_strangers() -> None:
         strange = ~np.isin(persons[asked], persons[learned])
         new = ~np.isin(tasks[asked], tasks[learned])
         for name, chosen in (
-            ("strangers, known tasks", strange & ~new),
-            ("strangers, new tasks", strange & new),
+            ("known tasks", strange & ~new),
+            ("new tasks", strange & new),
         ):
             who = [one.person.known for one, is_it in zip(found, chosen, strict=True) if is_it]
             what = [

@@ -12,7 +12,7 @@ import numpy as np
 from app.analysis.descriptors.motion_sample import SAMPLES
 from app.errors import NotEnoughLabels
 from app.models.folds import grouped_folds
-from app.models.holding_out import FOLDS
+from app.models.holding_out import FOLDS, MIN_LABELS
 from app.models.recognition.answers import NO_ANSWER, Answer, Recognition, given
 from app.models.recognition.copies import ClipCopies
 from app.models.recognition.flat_pca import fit_flat_pca, recognize_flat
@@ -148,11 +148,15 @@ def unknown_figures(record: Recognizer | TensorRecognizer) -> dict[str, dict[str
 
     The figures are those of the clips, persons and tasks that were held out when `record` was
     fitted. The threshold was chosen on them too, so the figures are slightly too good. If the
-    library has few repeated takes, the clips of known labels are simulated takes.
+    library has few repeated takes, the clips of known labels are simulated takes. If there were too
+    few labels to hold one out, "reason" says so instead.
     """
     figures: dict[str, dict[str, Any]] = {}
-    for name in ("person", "task"):
+    labels = record.model if isinstance(record, TensorRecognizer) else record
+    for name, names in (("person", labels.persons), ("task", labels.tasks)):
         calibration = getattr(record, f"{name}_calibration")
+        if 0 < len(names) < MIN_LABELS:
+            figures[name] = {"reason": _too_few(name, len(names))}
         if len(calibration.new_novelty) and len(calibration.known_novelty):
             accepted, rejected = calibration.error_rates()
             figures[name] = {
@@ -163,6 +167,11 @@ def unknown_figures(record: Recognizer | TensorRecognizer) -> dict[str, dict[str
                 "curve": [dict(zip(_CURVE, point, strict=True)) for point in calibration.curve()],
             }
     return figures
+
+
+def _too_few(name: str, count: int) -> str:
+    found = f"1 {name}" if count == 1 else f"{count} {name}s"
+    return f"No {name} could be held out: the clips have {found}, and {MIN_LABELS} are needed."
 
 
 def _guesses(method: _Recognize, clips: Clips, fold: IntArray) -> list[Guess]:
