@@ -56,7 +56,8 @@ class Candidate(Outgoing):
 
     label: str
     score: Probability = Field(
-        description=f"Share of belief in this label; all of them sum to at most 1. {ROUNDED}"
+        description=f"Share of belief in this label, or share by nearness (see `calibrated`); all "
+        f"of them sum to at most 1. {ROUNDED}"
     )
 
 
@@ -96,6 +97,11 @@ class Recognition(Outgoing):
 
     person: Answer
     task: Answer
+    calibrated: bool = Field(
+        description="Whether the scores of person and task are beliefs, calibrated on clips that "
+        "were held out. If false, they are shares by nearness and say nothing about errors: so do "
+        "`signatures` and `multilinear`."
+    )
     words: list[WordScore]
 
     @classmethod
@@ -104,5 +110,6 @@ class Recognition(Outgoing):
         return cls(
             person=Answer.of(recognized.person),
             task=Answer.of(recognized.task),
+            calibrated=recognized.calibrated,
             words=[WordScore(word=word, score=score) for word, score in recognized.words],
         )

@@ -10,6 +10,7 @@ import numpy as np
 from app.errors import NotEnoughLabels
 from app.evaluate.grouping import Grouping
 from app.models.held_out.recognition import Clips
+from app.models.recognition.copies import ClipCopies
 from app.models.recognition.views import full_samples
 from app.numerics.arrays import FloatArray, IntArray
 from app.services.library.library import Library
@@ -28,7 +29,8 @@ class JudgedClips:
     probes; sources: (N,) where they come from, None if unknown; unlabeled: the number of clips
     that carry neither label;
     angles: (N, 642) angle samples, None where a clip has none; wide: (N, 512) wide motion vectors;
-    reported: (N,) the group of each clip for which figures are reported, None without groups.
+    copies: (N,) disturbed copies of some clips; reported: (N,) the group of each clip for which
+    figures are reported, None without groups.
     """
 
     samples: FloatArray
@@ -39,6 +41,7 @@ class JudgedClips:
     unlabeled: int = 0
     angles: FloatArray | None = None
     wide: FloatArray | None = None
+    copies: ClipCopies | None = None
     reported: Sequence[str] | None = None
 
     def __len__(self) -> int:
@@ -46,11 +49,8 @@ class JudgedClips:
 
     def part(self, index: IntArray) -> Clips:
         """The training data of the clips at these indices (n,)."""
-        chosen = index.tolist()
-        persons, tasks, groups = (
-            [labels[i] for i in chosen] for labels in (self.persons, self.tasks, self.groups)
-        )
-        return Clips(self.samples[index], persons, tasks, groups)
+        whole = Clips(self.samples, self.persons, self.tasks, self.groups, self.copies)
+        return whole.part(index)
 
     def in_full(self) -> JudgedClips:
         """The same clips with full samples (N, 1762), if they have wide motion vectors."""
@@ -99,6 +99,7 @@ def judged_clips(training: TrainingSet, grouping: Grouping | None = None) -> Jud
     persons, tasks = training.persons, training.tasks
     angles = [training.angles.get(training.clips[i].id) for i in use]
     present = [one for one in angles if one is not None]
+    copies = training.disturbed_copies()
     return JudgedClips(
         samples=training.samples[use] if use else np.zeros((0, 0)),
         persons=[persons[i] for i in use],
@@ -108,5 +109,6 @@ def judged_clips(training: TrainingSet, grouping: Grouping | None = None) -> Jud
         unlabeled=len(training) - len(use),
         angles=np.stack(present) if present and len(present) == len(use) else None,
         wide=training.wide[use] if use else None,
+        copies=[copies[i] for i in use],
         reported=None if grouping is None else grouping.groups([training.clips[i] for i in use]),
     )

@@ -90,7 +90,7 @@ def pca(clips: Clips) -> Judge:
 
 def perera(clips: Clips, false_accept_rate: float | None = None) -> Judge:
     """Perera's objective (eqs 13-14); eqs 15-16 with learned thresholds decide what is new."""
-    record = fit_tensor_recognizer(*clips)
+    record = fit_tensor_recognizer(clips.samples, clips.persons, clips.tasks, clips.groups)
     if false_accept_rate is not None:
         record = record.accepting(false_accept_rate)
     return _by_tensor(record)

@@ -12,8 +12,9 @@ import numpy as np
 from app.analysis.descriptors.motion_sample import SAMPLES
 from app.errors import NotEnoughLabels
 from app.models.folds import grouped_folds
-from app.models.holding_out import FOLDS
+from app.models.holding_out import FOLDS, MIN_LABELS
 from app.models.recognition.answers import NO_ANSWER, Answer, Recognition, given
+from app.models.recognition.copies import ClipCopies
 from app.models.recognition.flat_pca import fit_flat_pca, recognize_flat
 from app.models.recognition.multilinear import fit_multilinear, recognize_multilinear
 from app.models.recognition.perera import TensorRecognizer, recognize_by_tensor, uncalibrated
@@ -29,12 +30,24 @@ _CURVE = ("threshold", "false_acceptance", "false_rejection")
 
 class Clips(NamedTuple):
     """Training clips: samples (clips, 1250), or of another width if the method needs it; labels
-    and groups (clips,) each."""
+    and groups (clips,) each; copies: (clips,) for the default method, None for no copies."""
 
     samples: FloatArray
     persons: Labels
     tasks: Labels
     groups: Sequence[str]
+    copies: ClipCopies | None = None
+
+    def part(self, index: IntArray) -> Clips:
+        """The clips at these indices."""
+        chosen = index.tolist()
+        return Clips(
+            self.samples[index],
+            [self.persons[i] for i in chosen],
+            [self.tasks[i] for i in chosen],
+            [self.groups[i] for i in chosen],
+            None if self.copies is None else [self.copies[i] for i in chosen],
+        )
 
 
 Guess = tuple[str | None, str | None]
@@ -64,12 +77,13 @@ def held_out_recognition(
     seed: int = 0,
     *,
     wide: FloatArray | None = None,
+    copies: ClipCopies | None = None,
 ) -> HeldOut:
     """Shares of recognized clips; each clip is judged by a model of the other folds.
 
     samples: (clips, 1250); wide: (clips, 512) wide motion vectors, for the default method;
-    groups: (clips,) clips of one recording share a value and a fold. The methods get no label of
-    a judged clip.
+    groups: (clips,) clips of one recording share a value and a fold; copies: (clips,) disturbed
+    copies of some clips, for the default method. The methods get no label of a judged clip.
 
     The figures are by method: "default", "multilinear", "perera", "pca" (flat PCA) and "prior"
     (the most frequent label of the training folds). They are the shares "person", "task" and
@@ -82,7 +96,8 @@ def held_out_recognition(
     figures: dict[str, dict[str, float]] = {}
     guesses: list[Guess] = []
     with suppress(NotEnoughLabels):
-        guesses = _guesses(_default, np.asarray(full), persons, tasks, groups, fold)
+        clips = Clips(np.asarray(full), persons, tasks, groups, copies)
+        guesses = _guesses(_default, clips, fold)
         figures["default"] = _shares(guesses, persons, tasks)
     methods = {
         "multilinear": _multilinear,
@@ -120,7 +135,7 @@ def _figures(
     figures = {}
     for name, method in methods.items():
         try:
-            guesses = _guesses(method, np.asarray(samples), persons, tasks, groups, fold)
+            guesses = _guesses(method, Clips(np.asarray(samples), persons, tasks, groups), fold)
         except NotEnoughLabels:
             continue
         figures[name] = _shares(guesses, persons, tasks)
@@ -133,11 +148,15 @@ def unknown_figures(record: Recognizer | TensorRecognizer) -> dict[str, dict[str
 
     The figures are those of the clips, persons and tasks that were held out when `record` was
     fitted. The threshold was chosen on them too, so the figures are slightly too good. If the
-    library has few repeated takes, the clips of known labels are simulated takes.
+    library has few repeated takes, the clips of known labels are simulated takes. If there were too
+    few labels to hold one out, "reason" says so instead.
     """
     figures: dict[str, dict[str, Any]] = {}
-    for name in ("person", "task"):
+    labels = record.model if isinstance(record, TensorRecognizer) else record
+    for name, names in (("person", labels.persons), ("task", labels.tasks)):
         calibration = getattr(record, f"{name}_calibration")
+        if 0 < len(names) < MIN_LABELS:
+            figures[name] = {"reason": _too_few(name, len(names))}
         if len(calibration.new_novelty) and len(calibration.known_novelty):
             accepted, rejected = calibration.error_rates()
             figures[name] = {
@@ -150,21 +169,17 @@ def unknown_figures(record: Recognizer | TensorRecognizer) -> dict[str, dict[str
     return figures
 
 
-def _guesses(
-    method: _Recognize,
-    samples: FloatArray,
-    persons: Labels,
-    tasks: Labels,
-    groups: Sequence[str],
-    fold: IntArray,
-) -> list[Guess]:
+def _too_few(name: str, count: int) -> str:
+    found = f"1 {name}" if count == 1 else f"{count} {name}s"
+    return f"No {name} could be held out: the clips have {found}, and {MIN_LABELS} are needed."
+
+
+def _guesses(method: _Recognize, clips: Clips, fold: IntArray) -> list[Guess]:
     """For each clip the best person and task, by a model of all other folds."""
     guesses: list[Guess] = [(None, None)] * len(fold)
     for each in np.unique(fold):
-        train, probe = (np.flatnonzero(chosen).tolist() for chosen in (fold != each, fold == each))
-        who, what = ([labels[i] for i in train] for labels in (persons, tasks))
-        clips = Clips(samples[train], who, what, [groups[i] for i in train])
-        recognitions = method(clips, samples[probe])
+        train, probe = np.flatnonzero(fold != each), np.flatnonzero(fold == each)
+        recognitions = method(clips.part(train), clips.samples[probe])
         for index, recognition in zip(probe, recognitions, strict=True):
             guesses[index] = (_best(recognition.person), _best(recognition.task))
     return guesses

@@ -124,11 +124,13 @@ def fit_calibration(
     truth: IntArray,
     seen: BoolArray | None = None,
     simulated: FloatArray | None = None,
+    threshold: float | None = None,
 ) -> Calibration:
     """Calibrate on held-out clips; without any, the calibration has fixed values.
 
     seen: (n,) whether the same person at the same task was among the training clips; None for
-    none. simulated: (m,) novelties of simulated further takes of the recorded cells.
+    none. simulated: (m,) novelties of simulated further takes of the recorded cells. threshold: the
+    one to use; None to choose it.
 
     A known clip that was not seen has a larger novelty than the clips of later requests. So the
     threshold and the error rates come from the seen clips, if there are MIN_CLIPS of them, else
@@ -140,12 +142,13 @@ def fit_calibration(
     if len(judged) < MIN_CLIPS and simulated is not None:
         judged = scaled = simulated
     if min(len(judged), len(new)) >= MIN_CLIPS:
-        threshold = _between_medians(judged, new)
+        chosen = _between_medians(judged, new)
         if judged is not simulated:
-            threshold = _in_the_gap(threshold, judged, new)
+            chosen = _in_the_gap(chosen, judged, new)
     else:
         judged = scaled = novelty[known]
-        threshold = _threshold(judged, new)
+        chosen = _threshold(judged, new)
+    threshold = chosen if threshold is None else threshold
     return Calibration(
         temperature=_temperature(evidence[known], truth[known]),
         threshold=threshold,

@@ -19,10 +19,11 @@ import numpy as np
 from app.analysis.descriptors.motion_sample import SAMPLE_LENGTH
 from app.errors import NotEnoughLabels
 from app.models.cells import find_cells
-from app.models.holding_out import MAX_PROBES, HeldOut, rounds
 from app.models.recognition.answers import Answer, Recognition, answer, given
-from app.models.recognition.calibration import NEW, Calibration, fit_calibration
-from app.models.recognition.hypotheses import fit_hypotheses
+from app.models.recognition.calibration import Calibration
+from app.models.recognition.copies import ClipCopies, CopiedClips
+from app.models.recognition.held_out_evidence import Labeled, calibrations
+from app.models.recognition.reach import allowance, nearest_cells, reach_of, recorded_cells
 from app.models.recognition.views import (
     SAMPLE_DIMENSIONS,
     BothViews,
@@ -33,17 +34,14 @@ from app.models.recognition.views import (
     newness,
     wide_dimensions,
 )
-from app.numerics.arrays import BoolArray, FloatArray, IntArray
-from app.numerics.principal_axes import principal_axes
+from app.numerics.arrays import FloatArray, IntArray
+from app.numerics.principal_axes import PrincipalAxes, principal_axes
 
-RECOGNIZER_VERSION = 3
+RECOGNIZER_VERSION = 4
 
 MOSTLY_REPEATED = 0.5
 """The takes of a library count as repeated if at least this share of its clips has another clip of
 the same person at the same task."""
-
-SIMULATED_TAKES = 3
-"""Number of simulated takes of each cell. They calibrate the novelty if takes are not repeated."""
 
 _Arrays = dict[str, np.ndarray[Any, Any]]
 
@@ -54,7 +52,9 @@ class Recognizer:
 
     persons, tasks: sorted labels; label indices refer to them. sample, wide: the two views;
     their hypotheses have the same kinds and labels in the same order. persons_by_both: whether
-    both views decide that a person is new (see LogDensities).
+    both views decide that a person is new (see LogDensities). allowed_persons, allowed_tasks: (h,)
+    what the hypotheses of recorded cells allow their clips (app.models.recognition.reach), 0 for
+    the others.
     """
 
     persons: tuple[str, ...]
@@ -64,6 +64,8 @@ class Recognizer:
     persons_by_both: bool
     person_calibration: Calibration
     task_calibration: Calibration
+    allowed_persons: FloatArray
+    allowed_tasks: FloatArray
 
     def accepting(self, false_accept_rate: float) -> Recognizer:
         """The same recognizer with another threshold.
@@ -79,6 +81,7 @@ class Recognizer:
     def to_arrays(self) -> tuple[_Arrays, dict[str, Any]]:
         """Arrays and JSON-able metadata for `from_arrays`."""
         arrays = self.sample.to_arrays("sample") | self.wide.to_arrays("wide")
+        arrays |= {name: getattr(self, name) for name in ("allowed_persons", "allowed_tasks")}
         meta: dict[str, Any] = {"version": RECOGNIZER_VERSION}
         meta |= {"persons": list(self.persons), "tasks": list(self.tasks)}
         meta["persons_by_both"] = self.persons_by_both
@@ -101,6 +104,8 @@ class Recognizer:
             bool(meta["persons_by_both"]),
             Calibration.from_arrays("person", arrays, meta["person_calibration"]),
             Calibration.from_arrays("task", arrays, meta["task_calibration"]),
+            arrays["allowed_persons"],
+            arrays["allowed_tasks"],
         )
 
 
@@ -109,13 +114,16 @@ def fit_recognizer(
     persons: Sequence[str | None],
     tasks: Sequence[str | None],
     groups: Sequence[str] | None = None,
+    copies: ClipCopies | None = None,
     sample_length: int = SAMPLE_LENGTH,
 ) -> Recognizer:
     """Fit on full samples with their labels (None: no label).
 
     samples: (clips, 1762); each is a motion sample of `sample_length` (1250), followed by the wide
     motion vector of the clip; groups: (clips,) clips of one recording share a value and are held
-    out together. Raises NotEnoughLabels with fewer than two labeled clips.
+    out together; copies: (clips,) the disturbed copies of some clips. Without copies, a clip with
+    noise or another speed is often called unknown. Raises NotEnoughLabels with fewer than two
+    labeled clips.
     """
     use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if any(labels)]
     if len(use) < 2:
@@ -127,14 +135,33 @@ def fit_recognizer(
     sample = principal_axes(rows.sample, SAMPLE_DIMENSIONS)
     wide = principal_axes(rows.wide, wide_dimensions(len(cells)))
     points = BothViews(sample.project(rows.sample), wide.project(rows.wide))
-    views = (
-        View(sample, fit_hypotheses(points.sample, cells)),
-        View(wide, fit_hypotheses(points.wide, cells)),
+    own_copies = [copies[i] for i in use] if copies is not None else []
+    copied = _copied(points, own_copies, (sample, wide), sample_length)
+    clips = Labeled(points, persons, tasks, together, copied)
+    hypotheses = clips.hypotheses(np.arange(len(use)))
+    by_both = int(cells.takes[cells.takes > 1].sum()) < MOSTLY_REPEATED * len(use)
+    person, task = calibrations(clips, hypotheses, persons_by_both=by_both)
+    views = View(sample, hypotheses[0]), View(wide, hypotheses[1])
+    recorded = recorded_cells(hypotheses[1])
+    reach = reach_of(hypotheses, recorded, persons_by_both=by_both)
+    allowed = np.zeros((2, len(hypotheses[1].kind)))
+    allowed[0, recorded] = allowance(person.threshold, reach.person)
+    allowed[1, recorded] = allowance(task.threshold, reach.task)
+    return Recognizer(cells.persons, cells.tasks, *views, by_both, person, task, *allowed)
+
+
+def _copied(
+    points: BothViews, copies: ClipCopies, axes: tuple[PrincipalAxes, PrincipalAxes], length: int
+) -> CopiedClips | None:
+    """The `copies` of the clips at `points` (n, d), in the coordinates of `axes`; None if none."""
+    index = [i for i, own in enumerate(copies) if own is not None]
+    if not index:
+        return None
+    by_clip = [both_views(own, length) for own in copies if own is not None]
+    sample, wide = (
+        np.stack([own.project(each[view]) for each in by_clip]) for view, own in enumerate(axes)
     )
-    repeated = int(cells.takes[cells.takes > 1].sum())
-    by_both = repeated < MOSTLY_REPEATED * len(use)
-    person, task = _calibrations(points, persons, tasks, together, views, by_both)
-    return Recognizer(cells.persons, cells.tasks, *views, by_both, person, task)
+    return CopiedClips(points, np.array(index), BothViews(sample, wide))
 
 
 def recognize(
@@ -165,10 +192,13 @@ def recognize_many(
     logs = LogDensities.under(sample.hypotheses, h, points, persons_by_both=record.persons_by_both)
     logs = logs.without_others(h.person, record.persons, known_person)
     logs = logs.without_others(h.task, record.tasks, known_task)
+    nearest = nearest_cells(logs.ranking, h)
+    new_person = newness(logs.new_person, h.person) - record.allowed_persons[nearest]
+    new_task = newness(logs.new_task, h.task) - record.allowed_tasks[nearest]
     of_factor = record.persons, record.person_calibration, known_person
-    who = _answers(logs.ranking, logs.new_person, h.person, *of_factor)
+    who = _answers(logs.ranking, new_person, h.person, *of_factor)
     of_factor = record.tasks, record.task_calibration, known_task
-    what = _answers(logs.ranking, logs.new_task, h.task, *of_factor)
+    what = _answers(logs.ranking, new_task, h.task, *of_factor)
     return [Recognition(person, task) for person, task in zip(who, what, strict=True)]
 
 
@@ -180,102 +210,15 @@ def _answers(
     calibration: Calibration,
     known: str | None,
 ) -> list[Answer]:
-    """Answers from two arrays of log densities (n, h).
+    """The answers for n clips.
 
-    ranking: ranks labels; novelty: decides whether the label is new; label: (h,) of the
-    hypotheses; known: the label that the caller knows.
+    ranking: (n, h) log densities that rank labels; novelty: (n,) less what the nearest cells allow;
+    label: (h,) of the hypotheses; known: the label that the caller knows.
     """
     if known is not None or not names:
         return [given(known or "", names)] * len(ranking)
-    new = newness(novelty, label)
-    beliefs = calibration.beliefs(evidence(ranking, label, len(names)), new)
-    beyond = (new - calibration.threshold) / calibration.scale
+    beliefs = calibration.beliefs(evidence(ranking, label, len(names)), novelty)
+    beyond = (novelty - calibration.threshold) / calibration.scale
     return [
         answer(names, row, bool(n <= 0), float(n)) for row, n in zip(beliefs, beyond, strict=True)
     ]
-
-
-_HeldOutResults = tuple[FloatArray, FloatArray, IntArray, BoolArray]
-"""evidence (n, labels), novelty (n,), truth (n,), seen (n,), as `calibration` has them."""
-
-
-def _calibrations(
-    points: BothViews,
-    persons: Sequence[str | None],
-    tasks: Sequence[str | None],
-    groups: Sequence[str],
-    views: tuple[View, View],
-    persons_by_both: bool,
-) -> tuple[Calibration, Calibration]:
-    """The calibrations for persons and for tasks.
-
-    They come from rounds that hold out clips, persons and tasks, and from simulated takes of the
-    `views` of all clips.
-    """
-    of_persons, of_tasks = [], []
-    names = [tuple(sorted({label for label in labels if label})) for labels in (persons, tasks)]
-    for kind, train, probe in rounds(persons, tasks, groups):
-        seen = find_cells([persons[i] for i in train], [tasks[i] for i in train])
-        sample, h = (fit_hypotheses(part, seen) for part in points.of(train))
-        logs = LogDensities.under(sample, h, points.of(probe), persons_by_both=persons_by_both)
-        who, what = [persons[i] for i in probe], [tasks[i] for i in probe]
-        pairs = {(persons[i], tasks[i]) for i in train}
-        seen_before = np.array([pair in pairs for pair in zip(who, what, strict=True)], dtype=bool)
-        # rounds that hold out tasks calibrate only the tasks
-        if kind is not HeldOut.TASKS:
-            new = newness(logs.new_person, h.person)
-            ranked = logs.ranking, h.person, seen.persons
-            of_persons.append(_held_out(*ranked, new, who, names[0], seen_before))
-        # the task of a new person can be known: held-out persons count as known tasks
-        new = newness(logs.new_task, h.task)
-        of_tasks.append(
-            _held_out(logs.ranking, h.task, seen.tasks, new, what, names[1], seen_before)
-        )
-    # The error rates are those of clips with a recorded pair of person and task. So a task of a new
-    # person may be called unknown (with the right best candidate), except if there is a gap between
-    # new and known tasks.
-    sample, h = (view.hypotheses for view in views)
-    further = BothViews(*(each.further_takes(SIMULATED_TAKES, MAX_PROBES) for each in (sample, h)))
-    simulated = LogDensities.under(sample, h, further, persons_by_both=persons_by_both)
-    return (
-        _calibrated(of_persons, len(names[0]), newness(simulated.new_person, h.person)),
-        _calibrated(of_tasks, len(names[1]), newness(simulated.new_task, h.task)),
-    )
-
-
-def _held_out(
-    ranking: FloatArray,
-    label: IntArray,
-    seen: tuple[str, ...],
-    new: FloatArray,
-    truth: Sequence[str | None],
-    names: tuple[str, ...],
-    seen_before: BoolArray,
-) -> _HeldOutResults:
-    """The results of a round for its labeled probes.
-
-    seen: the labels of the training clips; the other labels get no evidence. seen_before: (n,)
-    whether the training clips have person and task of the probe together.
-    """
-    has = np.array([bool(name) for name in truth], dtype=bool)
-    if not seen or not has.any():
-        return _no_results(len(names))
-    by_label = np.full((int(has.sum()), len(names)), -np.inf)
-    by_label[:, [names.index(name) for name in seen]] = evidence(ranking[has], label, len(seen))
-    index = [names.index(name) if name in seen else NEW for name in truth if name]
-    return by_label, new[has], np.array(index, dtype=np.int64), seen_before[has]
-
-
-def _calibrated(held: list[_HeldOutResults], labels: int, simulated: FloatArray) -> Calibration:
-    parts = zip(_no_results(labels), *held, strict=True)
-    by_label, new, truth, seen_before = (np.concatenate(part) for part in parts)
-    return fit_calibration(by_label, new, truth, seen_before, simulated)
-
-
-def _no_results(labels: int) -> _HeldOutResults:
-    return (
-        np.zeros((0, labels)),
-        np.zeros(0),
-        np.zeros(0, dtype=np.int64),
-        np.zeros(0, dtype=bool),
-    )

@@ -17,6 +17,7 @@ import numpy as np
 from app.analysis.descriptors.motion_sample import SAMPLE_LENGTH
 from app.models.recognition.calibration import NEW
 from app.models.recognition.hypotheses import Hypotheses
+from app.models.recognition.kinds import Disturbed
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 from app.numerics.principal_axes import PrincipalAxes
 
@@ -109,7 +110,8 @@ class LogDensities(NamedTuple):
         """The log densities of both views.
 
         The mean of both (Student's t) ranks labels; the wide view (Gaussian) decides what is
-        new. persons_by_both: both views decide whether a person is new. This is better if few
+        new, without the hypotheses that a clip is cut: a piece of a new task resembles a piece of a
+        known one. persons_by_both: both views decide whether a person is new. This is better if few
         takes are repeated. Else the sample view only adds noise, since takes of one task differ
         much in it.
         """
@@ -119,6 +121,8 @@ class LogDensities(NamedTuple):
         person = task = wide.log_densities(of_wide)
         if persons_by_both:
             person = (sample.log_densities(of_sample) + task) / 2
+        is_whole = wide.disturbed != Disturbed.CUT
+        person, task = (np.where(is_whole, logs, -np.inf) for logs in (person, task))
         return cls((by_sample + by_wide) / 2, person, task)
 
     def of(self, index: BoolArray) -> LogDensities:

@@ -26,6 +26,9 @@ METHODS = ("default", "multilinear", "signatures", "perera")
 her model on joint angles, as she used it; Perera's objective."""
 INPUTS = {"default": (SAMPLE, WIDE), "signatures": (ANGLES,)}
 """Arrays whose concatenation a method recognizes; the other methods recognize motion samples."""
+CALIBRATED = ("default", "perera")
+"""The methods whose scores are beliefs, calibrated on held-out clips. The scores of the others are
+shares by nearness."""
 WORDS_SHOWN = 10
 
 WordScores = tuple[tuple[str, float], ...]
@@ -48,10 +51,15 @@ class RecognizeQuery:
 
 @dataclass(frozen=True, slots=True)
 class Recognized:
-    """Person, task, and words with their scores, the best first."""
+    """Person, task, and words with their scores, the best first.
+
+    calibrated: whether the scores of persons and tasks are beliefs; else they are shares by
+    nearness.
+    """
 
     person: Answer
     task: Answer
+    calibrated: bool
     words: WordScores = field(default=())
 
 
@@ -73,7 +81,8 @@ def recognize(lib: Library, query: RecognizeQuery) -> Recognized:
     arrays = describe(lib, query.source, (*names, STATISTICS)).arrays
     sample = np.concatenate([arrays[name] for name in names])
     answers = _person_and_task(lib, sample, query)
-    return Recognized(answers.person, answers.task, words_of(lib, arrays[STATISTICS]))
+    words = words_of(lib, arrays[STATISTICS])
+    return Recognized(answers.person, answers.task, query.method in CALIBRATED, words)
 
 
 def _person_and_task(lib: Library, sample: FloatArray, query: RecognizeQuery) -> Recognition:

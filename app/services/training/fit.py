@@ -158,9 +158,12 @@ def word_figures(training: TrainingSet) -> Meta:
 
 def _fit_recognizer(training: TrainingSet, _: Before) -> Fit:
     persons, tasks, groups = training.persons, training.tasks, training.groups
-    model = fit_recognizer(training.full_samples, persons, tasks, groups)
+    copies = training.disturbed_copies()
+    model = fit_recognizer(training.full_samples, persons, tasks, groups, copies)
     arrays, meta = model.to_arrays()
-    judged = held_out_recognition(training.samples, persons, tasks, groups, wide=training.wide)
+    judged = held_out_recognition(
+        training.samples, persons, tasks, groups, wide=training.wide, copies=copies
+    )
     ids = [clip.id for clip in training.clips]
     guesses, names = guess_arrays(ids, persons, tasks, judged.guesses)
     figures: Meta = {"held_out": judged.figures, "unknown": unknown_figures(model)}

@@ -10,6 +10,7 @@ import numpy as np
 from app.analysis.symbols.symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.models.folds import recording_of
 from app.models.metric.learned_metric import INPUTS, ClipDescriptors
+from app.models.recognition.copies import ClipCopies, disturbed_copies, evenly_chosen
 from app.models.recognition.views import full_samples
 from app.motion.roles.joint_roles import ESSENTIAL_ROLES
 from app.numerics.arrays import FloatArray
@@ -26,6 +27,7 @@ from app.store.store import Store
 WIDE = "wide_motion_vector"
 NAMES = (*SYMBOL_ARRAYS, *INPUTS, WIDE)
 ANGLES = "angle_sample"
+POSITIONS = "role_positions"
 READY = ClipFilter(state=(ClipState.READY,))
 
 
@@ -35,7 +37,8 @@ class TrainingSet:
 
     groups: (N,) equal for clips of one recording; symbols: N; statistics: (N, 131); samples:
     (N, 1250); vectors: (N, 128); wide: (N, 512); angles: (642,) by clip id, missing for clips of
-    an analysis without joint angles; is_anonymous: the set has no persons, since persons must
+    an analysis without joint angles; positions: (n, 13, 3) meters, by the id of the clips that are
+    copied (app.models.recognition.copies); is_anonymous: the set has no persons, since persons must
     not be recognized.
     """
 
@@ -48,6 +51,7 @@ class TrainingSet:
     vectors: FloatArray
     wide: FloatArray
     angles: Mapping[str, FloatArray] = field(default_factory=dict)
+    positions: Mapping[str, FloatArray] = field(default_factory=dict)
     is_anonymous: bool = False
 
     def __len__(self) -> int:
@@ -84,6 +88,13 @@ class TrainingSet:
         """(N, 1762) the input of the default recognizer."""
         return full_samples(self.samples, self.wide)
 
+    def disturbed_copies(self) -> ClipCopies:
+        """(N,) the disturbed copies of some clips. They are computed, which takes seconds."""
+        return [
+            disturbed_copies(self.positions[clip.id], seed) if clip.id in self.positions else None
+            for seed, clip in enumerate(self.clips)
+        ]
+
     @property
     def described(self) -> ClipDescriptors:
         """The input of learned metrics."""
@@ -112,7 +123,9 @@ def read_training_set(store: Store, filter: ClipFilter = READY) -> TrainingSet:
         whole = [clip_id for clip_id in ids if all(clip_id in part for part in found.values())]
         records = clips.get_many(tx, whole)
         angles = usable_arrays.get_many(tx, whole, ANGLES)
-    whole = [clip_id for clip_id in whole if _teaches(records[clip_id])]
+        whole = [clip_id for clip_id in whole if _teaches(records[clip_id])]
+        copied = [whole[i] for i in evenly_chosen(len(whole))]
+        positions = usable_arrays.get_many(tx, copied, POSITIONS)
     return TrainingSet(
         library_version=version,
         clips=tuple(records[clip_id] for clip_id in whole),
@@ -126,6 +139,7 @@ def read_training_set(store: Store, filter: ClipFilter = READY) -> TrainingSet:
         vectors=_stacked([found["motion_vector"][clip_id] for clip_id in whole]),
         wide=_stacked([found[WIDE][clip_id] for clip_id in whole]),
         angles=angles,
+        positions=positions,
     )
 
 

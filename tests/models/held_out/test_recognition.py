@@ -1,12 +1,15 @@
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from app.models.held_out.recognition import (
+    Clips,
     held_out_recognition,
     signature_figures,
     unknown_figures,
 )
+from app.models.recognition.perera import fit_tensor_recognizer
 from app.models.recognition.recognizer import fit_recognizer
 from tests.models.factor_clips import POSES, factor_clips
 
@@ -58,3 +61,24 @@ def test_error_rates_for_unknown_labels_are_reported() -> None:
         errors = shares["false_acceptance"] + shares["false_rejection"]
         assert shares["balanced_accuracy"] == pytest.approx(1 - errors / 2)
         assert shares["balanced_accuracy"] > 0.75
+
+
+def test_a_library_with_one_label_says_that_nothing_could_be_held_out() -> None:
+    clips = factor_clips(persons=4, tasks=1, takes=5, width=POSES)
+    for fit in (fit_recognizer, fit_tensor_recognizer):
+        figures = unknown_figures(fit(clips.samples, clips.persons, clips.tasks))
+        assert figures["task"] == {
+            "reason": "No task could be held out: the clips have 1 task, and 3 are needed."
+        }
+        assert "area_under_curve" in figures["person"]
+
+
+def test_copies_stay_with_their_clips() -> None:
+    clips = factor_clips(persons=2, tasks=2, takes=2)
+    copies = [row[None] if i % 2 else None for i, row in enumerate(clips.samples)]
+    whole = Clips(clips.samples, clips.persons, clips.tasks, clips.persons, copies)
+    part = whole.part(np.array([5, 2, 7]))
+    assert part.copies is not None
+    assert part.copies[1] is None
+    for row, own in ((0, part.copies[0]), (2, part.copies[2])):
+        np.testing.assert_array_equal(own, part.samples[[row]])

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import permutations
 
 import numpy as np
@@ -7,7 +8,8 @@ import pytest
 from scipy.stats import multivariate_normal, multivariate_t
 
 from app.models.cells import cell_means, find_cells
-from app.models.recognition.hypotheses import Hypotheses, Kind, fit_hypotheses, shrunk
+from app.models.recognition.hypotheses import TAKES_FREEDOM, Hypotheses, fit_hypotheses, shrunk
+from app.models.recognition.kinds import Disturbed, Kind
 
 
 def of_kind(record: Hypotheses, kind: Kind) -> tuple[np.ndarray, np.ndarray]:
@@ -104,9 +106,39 @@ def test_further_takes_have_the_covariance_of_their_cells() -> None:
     seen = np.flatnonzero(record.kind == Kind.SEEN)
     for h, drawn in zip(seen, takes, strict=True):
         back = np.linalg.inv(record.whiteners[record.form[h]])
-        truth = record.spread[h] * back.T @ back
+        # the covariance of Student's t
+        truth = TAKES_FREEDOM / (TAKES_FREEDOM - 2) * record.spread[h] * back.T @ back
         np.testing.assert_allclose(drawn.mean(axis=0), record.means[h] @ back, atol=0.1)
         assert np.linalg.norm(np.cov(drawn.T) - truth) < 0.1 * np.linalg.norm(truth)
     np.testing.assert_array_equal(takes[:1], record.further_takes(3000, 1).reshape(1, 3000, 3))
     nothing = fit_hypotheses(points, find_cells(persons, [None] * 120))
     assert nothing.further_takes(3, 100).shape == (0, 3)
+
+
+def test_disturbed_clips_have_hypotheses_of_their_own() -> None:
+    rng = np.random.default_rng(4)
+    who, what = ["a", "a", "b", "b"] * 5, ["x", "y"] * 10
+    points = rng.standard_normal((20, 3))
+    cells = find_cells(who, what)
+    plain = fit_hypotheses(points, cells)
+    moments = {Disturbed.LIGHTLY: 4 * np.eye(3), Disturbed.CUT: 9 * np.eye(3)}
+    record = fit_hypotheses(points, cells, moments)
+    probes = 2 * rng.standard_normal((5, 3))
+    np.testing.assert_array_equal(
+        record.log_likelihoods(probes)[:, record.disturbed == Disturbed.NOT],
+        plain.log_likelihoods(probes),
+    )
+    for what_happened, added in moments.items():
+        own = record.disturbed == what_happened
+        assert record.kind[own].tolist() == plain.kind.tolist()
+        np.testing.assert_array_equal(record.task[own], plain.task)
+        wide, narrow = (
+            of_kind(replace_kinds(record, chosen), Kind.NEW_BOTH)[1]
+            for chosen in (own, record.disturbed == Disturbed.NOT)
+        )
+        np.testing.assert_allclose(wide, narrow + added)
+
+
+def replace_kinds(record: Hypotheses, chosen: np.ndarray) -> Hypotheses:
+    """The record in which only the chosen hypotheses have a kind."""
+    return replace(record, kind=np.where(chosen, record.kind, -1))

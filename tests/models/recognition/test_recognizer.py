@@ -162,6 +162,56 @@ def test_information_of_the_wide_vector_alone_is_used(clips: FactorClips) -> Non
     assert right[1] < 0.5
 
 
+def test_a_recognizer_with_copies_knows_disturbed_clips_and_new_persons() -> None:
+    """The disturbance moves clips farther than takes differ; copies have other draws of it."""
+    clips = factor_clips(persons=7)
+    rng = np.random.default_rng(6)
+
+    def disturbed(samples: np.ndarray) -> np.ndarray:
+        return samples + 0.2 * rng.normal(size=samples.shape)
+
+    new = np.array([person == "p3" for person in clips.persons])
+    samples, who, what = clips.where(~new & (clips.takes > 0))
+    copies = [disturbed(np.repeat(row[None], 6, axis=0)) for row in samples]
+    asked, truth, _ = clips.where(~new & (clips.takes == 0))
+    unknown = {}
+    for name, own in (("without", None), ("with", copies)):
+        record = fit_recognizer(samples, who, what, copies=own)
+        found = [one.person for one in recognize_many(record, disturbed(asked))]
+        unknown[name] = np.mean([not one.known for one in found])
+        assert [one.candidates[0].label for one in found] == truth
+        strangers = recognize_many(record, clips.samples[new])
+        assert np.mean([not one.person.known for one in strangers]) > 0.8
+        assert np.mean([one.person.known for one in recognize_many(record, asked)]) > 0.8
+    assert unknown["without"] > 0.8
+    assert unknown["with"] < 0.2
+
+
+def test_copies_of_some_clips_are_enough(clips: FactorClips) -> None:
+    samples, who, what = clips.where(clips.takes > 0)
+    rng = np.random.default_rng(7)
+    copies = [
+        row + 0.01 * rng.normal(size=(6, WIDTH)) if i % 4 == 0 else None
+        for i, row in enumerate(samples)
+    ]
+    asked, _, truth = clips.where(clips.takes == 0)
+    found = recognize_many(fit_recognizer(samples, who, what, copies=copies), asked)
+    assert share_of_tasks(found, truth) > 0.9
+    none = recognize_many(fit_recognizer(samples, who, what, copies=[None] * len(samples)), asked)
+    assert none == recognize_many(fit_recognizer(samples, who, what), asked)
+
+
+def test_a_clip_that_was_learned_is_known_even_if_its_cell_has_no_other_take(
+    clips: FactorClips,
+) -> None:
+    alone = np.array([person == "p4" for person in clips.persons])
+    samples, who, what = clips.where(~alone | (clips.takes == 1))
+    found = recognize_many(
+        fit_recognizer(samples, who, what), clips.samples[alone & (clips.takes == 1)]
+    )
+    assert all(one.person.label == "p4" for one in found)
+
+
 @pytest.mark.parametrize("labels", [[], [None, None, None], ["a", None, None]])
 def test_too_few_labels_are_refused(labels: list[str | None]) -> None:
     with pytest.raises(NotEnoughLabels):

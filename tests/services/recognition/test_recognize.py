@@ -29,6 +29,7 @@ def test_a_stored_clip_is_recognized(
     found = recognize.recognize(ready_library, query)
     assert found.task.candidates[0].label == "wave"
     assert found.person.candidates[0].label == "ada"
+    assert found.calibrated is (method in ("default", "perera"))
     scores = [score for _, score in found.words]
     assert "wave" in dict(found.words)
     assert scores == sorted(scores, reverse=True)

@@ -63,3 +63,17 @@ def test_models_do_not_learn_from_a_part_of_a_body(
     assert found.state == "ready"
     assert "neck" in found.missing_roles
     assert [clip.id for clip in read_training_set(lib.store).clips] == [whole.id]
+
+
+def test_clips_have_disturbed_copies(lib: Library, some_demo_clips: list[DemoClip]) -> None:
+    for clip in some_demo_clips[:2]:
+        upload(lib, clip)
+    work(lib.settings)
+    training = read_training_set(lib.store)
+    copies = training.disturbed_copies()
+    assert len(copies) == len(training) == 2
+    for own, full in zip(copies, training.full_samples, strict=True):
+        assert own is not None
+        apart = np.linalg.norm(own - full, axis=1)
+        other = np.linalg.norm(own - training.full_samples.sum(axis=0) + full, axis=1)
+        assert (apart < other).all()

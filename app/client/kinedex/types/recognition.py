@@ -11,8 +11,9 @@ from kinedex.records import Record
 class Candidate(Record):
     """A possible label.
 
-    score: Share of belief in this label; all of them sum to at most 1. Rounded to 4 decimals,
-    because the calibration is not more exact. 0 means very unlikely, not impossible.
+    score: Share of belief in this label, or share by nearness (see `calibrated`); all of them
+    sum to at most 1. Rounded to 4 decimals, because the calibration is not more exact. 0 means
+    very unlikely, not impossible.
     """
 
     label: str
@@ -50,8 +51,14 @@ class WordScore(Record):
 
 @dataclass(frozen=True, slots=True)
 class Recognition(Record):
-    """Person, task and words of a motion."""
+    """Person, task and words of a motion.
+
+    calibrated: Whether the scores of person and task are beliefs, calibrated on clips that were
+    held out. If false, they are shares by nearness and say nothing about errors: so do
+    `signatures` and `multilinear`.
+    """
 
     person: Answer
     task: Answer
+    calibrated: bool
     words: list[WordScore]
