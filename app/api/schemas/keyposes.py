@@ -75,7 +75,10 @@ class Keyposes(Outgoing):
     t2: float
     thresholds: ThresholdSources
     frame_rate: float = Field(description="Frames per second of `frames` and of the energy curves.")
-    tempo: float | None = Field(description="Beats per minute; null if no beat was detected.")
+    tempo: float | None = Field(
+        description="Beats per minute; null if no beat was detected. From the motion alone it is "
+        "rarely found in recorded dances: send `tempo`, `beats` or a recording."
+    )
     beats: list[float] = Field(description="Seconds.")
     beats_source: Literal["given", "tempo", "audio", "motion", "none"] = Field(
         description="The source of the beats. Keyposes are searched only near beats from `given`, "

@@ -44,7 +44,8 @@ class Keyposes(Record):
     """Poses at which a motion comes to rest, near its beats if it has beats, or turns back.
 
     frame_rate: Frames per second of `frames` and of the energy curves.
-    tempo: Beats per minute; null if no beat was detected.
+    tempo: Beats per minute; null if no beat was detected. From the motion alone it is rarely
+    found in recorded dances: send `tempo`, `beats` or a recording.
     beats: Seconds.
     beats_source: The source of the beats. Keyposes are searched only near beats from `given`,
     `tempo` or `audio`. Beats from `motion` only select a moment within a rest.
