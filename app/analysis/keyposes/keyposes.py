@@ -7,7 +7,7 @@ minimum is a candidate, because such beats contain no other information than the
 does not rest. If a motion goes on for long without a keypose, its keyposes are the poses at which
 it is slowest as seen from the waist: at each step, when the feet are farthest apart. Without known
 beats, the far ends of movements that return to the pose they left are keyposes too, such as those
-of kicks and punches (`turning_points`; not in the paper).
+of kicks and punches (`turning_points`; not in the paper). They do not depend on T1 and T2.
 """
 
 from __future__ import annotations
