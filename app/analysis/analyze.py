@@ -50,7 +50,7 @@ from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray
 from app.numerics.tensors.rank1 import Rank1
 
-ANALYSIS_VERSION = 6
+ANALYSIS_VERSION = 7
 """Raise this number if the content of an array changes. Older clips are then analyzed again."""
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from app.demo.actors import ACTORS, Actor
 from app.demo.clip import DemoClip
-from app.demo.dances import Sound, dance
+from app.demo.dances import FLOWING, Sound, dance
 from app.demo.performance import Performance
 from app.demo.posing import local_rotations
 from app.demo.rig import build_rig, skeleton_of
@@ -97,6 +97,7 @@ def danced_clips() -> Iterator[DemoClip]:
             bpm=actor.beats_per_minute,
             seconds=CHOREOGRAPHY_SECONDS,
             drift=CHOREOGRAPHY_DRIFT,
+            manner=FLOWING,
             actor=actor,
             sound=Sound.MUSIC if number % 3 else Sound.CLICKS,
         )
@@ -127,7 +128,9 @@ def _write(target: Path, content: bytes) -> None:
 
 
 def _row(clip: DemoClip) -> list[str]:
-    keyposes = " ".join(f"{time:.3f}" for time in clip.keyposes)
+    # The short dances stop at every keypose. Any method finds these, so they would judge nothing.
+    named = clip.keyposes if clip.holds else ()
+    keyposes = " ".join(f"{time:.3f}" for time in named)
     offset = "" if clip.audio_offset is None else f"{clip.audio_offset:g}"
     labels = [clip.person, clip.task, " ".join(clip.words), f"{clip.frame_rate:g}", keyposes]
     return [clip.path, SOURCE, LICENSE, *labels, clip.audio_path, offset]

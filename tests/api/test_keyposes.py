@@ -28,7 +28,7 @@ def test_keyposes_come_with_energies_thresholds_and_beats(
     assert reply["times"] == pytest.approx(
         [frame / reply["frame_rate"] for frame in reply["frames"]]
     )
-    assert set(reply["chosen_by"]) <= {"global", "local"}
+    assert set(reply["chosen_by"]) <= {"global", "local", "turn"}
 
 
 def test_weights_and_method_change_the_curves(demo: httpx2.Client, walk: dict[str, Any]) -> None:

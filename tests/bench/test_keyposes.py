@@ -22,10 +22,17 @@ from app.analysis.energy.energy import EnergyMethod, Weights, energies
 from app.analysis.keyposes.end_effectors import end_effector_candidates
 from app.analysis.keyposes.keyposes import T1, T2, find_candidates, find_keyposes
 from app.analysis.rhythm.beats import Beats, find_beats, given_beats
-from app.demo.dances import dance
+from app.demo.dances import FLOWING, STOPPING, Manner, dance
 from app.formats.read import read_recording
 from app.models.keyposes.matching import Counts, match, total
-from app.models.keyposes.thresholds import Example, Selectable, Thresholds, threshold_grid
+from app.models.keyposes.thresholds import (
+    Example,
+    Selectable,
+    Thresholds,
+    curve_of_t1,
+    curve_of_t2,
+    threshold_grid,
+)
 from app.motion.canonical.canonical import canonicalize
 from app.motion.frame.body_frame import BodyTrack, body_track
 from app.motion.motion import Motion
@@ -62,8 +69,16 @@ def dances(first: int, count: int, noise: float) -> tuple[Danced, ...]:
     return tuple(_danced(first + i, TEMPI[i % 9], DRIFTS[i // 9 % 3], noise) for i in range(count))
 
 
-def _danced(seed: int, bpm: float, drift: float, noise: float) -> Danced:
-    clip = dance(seed, bpm=bpm, drift=drift, noise_mm=noise)
+@lru_cache
+def flowing_dances(first: int, count: int, noise: float) -> tuple[Danced, ...]:
+    """Dances that rest as rarely as recorded ones, like those of the demo library."""
+    return tuple(
+        _danced(first + i, TEMPI[i % 9], DRIFTS[i // 9 % 3], noise, FLOWING) for i in range(count)
+    )
+
+
+def _danced(seed: int, bpm: float, drift: float, noise: float, manner: Manner = STOPPING) -> Danced:
+    clip = dance(seed, bpm=bpm, drift=drift, noise_mm=noise, manner=manner)
     motion = canonicalize(read_recording(clip.content))
     return Danced(body_track(motion), np.array(clip.keyposes), np.array(clip.beats))
 
@@ -132,6 +147,38 @@ def test_generated_dances() -> None:
         assert found[10].f >= 0.90
         assert found[5].f >= (0.95 if source == "given" else 0.93)
         assert found[5].f > rows[f"printed, beats {source}"][NOISES.index(5)].f
+
+
+def test_dances_that_rest_rarely() -> None:
+    """Thresholds and methods matter here, as they do not for dances that stop."""
+    rows = {
+        f"{method}, beats {source}": [
+            judged(examples(method, source, flowing_dances, 9200, 18, noise)) for noise in NOISES
+        ]
+        for method in METHODS
+        for source in BEATS
+    }
+    print_table("18 flowing dances, usual thresholds", rows)
+    learned = threshold_grid(examples("rms", "given", flowing_dances, 1200, 9, 0.0)).learned()
+    some = examples("rms", "given", flowing_dances, 9200, 18, 0.0)
+    at = judged(some, learned)
+    FIGURES.print(
+        f"thresholds learned on 9 others ({learned.t1:g}, {learned.t2:g}), beats given, no noise:"
+        f" precision {at.precision:.3f}, recall {at.recall:.3f}, F {at.f:.3f}"
+    )
+    for name, curve in (
+        ("T1", curve_of_t1(some, learned.t2)),
+        ("T2", curve_of_t2(some, learned.t1)),
+    ):
+        for label, values in (
+            (name, curve.values),
+            ("precision", curve.precision),
+            ("recall", curve.recall),
+        ):
+            FIGURES.print(f"{label:<10}" + "".join(f"{value:6.2f}" for value in values[:12:2]))
+    assert np.ptp(curve_of_t1(some, learned.t2).recall) > 0.2
+    clean = {name: counts[0].f for name, counts in rows.items()}
+    assert clean["rms, beats given"] > clean["printed, beats given"]
 
 
 def test_thresholds_learned_on_other_dances() -> None:

@@ -1,4 +1,4 @@
-"""Random dances are deterministic and human, and the body rests at their keyposes."""
+"""Random dances are deterministic and human, and the body rests or is slow at their keyposes."""
 
 from __future__ import annotations
 
@@ -7,10 +7,14 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from app.analysis.energy.energy import energies
+from app.analysis.energy.energy import EnergyMethod, energies
+from app.analysis.keyposes.energy_minima import median_maximum
+from app.analysis.keyposes.keyposes import T1, T2, find_candidates
 from app.demo import DemoClip
-from app.demo.dances import dance
+from app.demo.dances import FLOWING, STOPPING, Manner, dance
 from app.formats.read import read_recording
+from app.models.keyposes.matching import match, total
+from app.models.keyposes.thresholds import Example, curve_of_t1
 from app.motion.canonical.canonical import canonicalize
 from app.motion.frame.body_frame import body_track
 from app.motion.motion import Motion
@@ -90,9 +94,10 @@ def test_no_joint_is_faster_than_human_joints(seed: int) -> None:
 
 
 def test_passes_leave_beats_without_keyposes_and_freezes_hold_longer() -> None:
-    every = dance(5, bpm=100, passes=0.0, freezes=0.0)
-    passing = dance(5, bpm=100, passes=0.8, freezes=0.0)
-    frozen = dance(5, bpm=100, passes=0.0, freezes=0.9)
+    every, passing, frozen = (
+        dance(5, bpm=100, manner=Manner(passes=passes, freezes=freezes))
+        for passes, freezes in ((0.0, 0.0), (0.8, 0.0), (0.0, 0.9))
+    )
     assert len(passing.keyposes) < len(every.keyposes)
     assert max(b - a for a, b in every.holds) < 0.4
     assert np.median([b - a for a, b in frozen.holds]) > 0.55
@@ -103,3 +108,53 @@ def test_noise_has_the_requested_size() -> None:
     noisy, clean = (read_recording(c.content).positions for c in (clip, same))
     assert np.std(noisy - clean) == pytest.approx(0.01, rel=0.02)
     assert clip.keyposes == same.keyposes
+
+
+def performed(manner: Manner) -> list[tuple[DemoClip, Motion]]:
+    clips = [dance(seed, bpm=bpm, seconds=16.0, manner=manner) for seed, bpm in SEEDS.items()]
+    return [(clip, canonicalize(read_recording(clip.content))) for clip in clips]
+
+
+def resting_share(motion: Motion) -> float:
+    energy = energies(body_track(motion)).global_energy
+    return float(np.mean(energy < T1 * median_maximum(energy)[0]))
+
+
+def test_a_flowing_dancer_rests_less() -> None:
+    flowing, stopping = (
+        np.mean([resting_share(motion) for _, motion in performed(manner)])
+        for manner in (FLOWING, STOPPING)
+    )
+    assert flowing < 0.75 * stopping
+
+
+def test_a_flowing_dancer_is_slow_at_keyposes() -> None:
+    for clip, motion in performed(FLOWING):
+        energy = energies(body_track(motion)).global_energy
+        at_keyposes = np.interp(clip.keyposes, np.arange(len(energy)) / 30.0, energy)
+        assert np.median(at_keyposes) < 0.7 * np.median(energy)
+        assert motion.cautions == ()
+        speeds = np.linalg.norm(np.diff(motion.positions, axis=0), axis=-1) * motion.frame_rate
+        assert speeds.max() < 9.0
+
+
+def test_flowing_dances_tell_thresholds_and_methods_apart() -> None:
+    tracks = [(body_track(motion), clip) for clip, motion in performed(FLOWING)]
+    rms, printed = (
+        [
+            Example(
+                find_candidates(track, method=method, beats=np.array(clip.beats)),
+                np.array(clip.keyposes),
+            )
+            for track, clip in tracks
+        ]
+        for method in (EnergyMethod.RMS, EnergyMethod.PRINTED)
+    )
+    by_rms, by_printed = (
+        total(match(one.candidates.times(T1, T2), one.true) for one in some)
+        for some in (rms, printed)
+    )
+    assert by_rms.f > by_printed.f + 0.03
+    recall = curve_of_t1(rms, T2).recall
+    assert recall[0] < 0.6 < 0.85 < recall[-1]
+    assert np.unique(recall).size > 5

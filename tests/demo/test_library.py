@@ -94,7 +94,7 @@ def test_files_and_manifest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
         assert row["source"] == "Kinedex demo"
         assert row["task"] in row["words"].split()
         assert float(row["fps"]) == ACTORS[0].frame_rate
-        assert bool(row["keyposes"]) == (row["task"] == "dance")
+        assert bool(row["keyposes"]) == ("choreography" in row["path"])
     (recorded,) = (row for row in rows if row["audio"])
     assert (tmp_path / "demo" / recorded["audio"]).read_bytes().startswith(b"RIFF")
     assert -5.0 <= float(recorded["audio_offset"]) <= 1.0

@@ -43,7 +43,7 @@ MIN_AGREEMENT = 0.85
 
 
 class Scope(StrEnum):
-    """The energy that has the minimum."""
+    """What makes a pose a keypose: the energy that has a minimum there, or a turning point."""
 
     GLOBAL = "global"
     """The global energy: the whole body comes to rest."""
@@ -51,10 +51,16 @@ class Scope(StrEnum):
     LOCAL = "local"
     """The local energy: the body comes to rest as seen from the waist, which may travel on."""
 
+    TURN = "turn"
+    """The far end of a movement that returns to the pose that it left, such as a strike."""
+
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """A minimum that may be a keypose at `frame`; beat: the index of its beat, None without."""
+    """A minimum that may be a keypose at `frame`; beat: the index of its beat, None without.
+
+    A turning point has a minimum of one frame, with its local energy.
+    """
 
     frame: int
     beat: int | None

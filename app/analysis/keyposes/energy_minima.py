@@ -90,6 +90,11 @@ def median_maximum(values: FloatArray) -> tuple[float, FloatArray]:
     return unit, standing
 
 
+def turning_minimum(frame: int, energy: float) -> EnergyMinimum:
+    """A turning point at `frame` as a minimum; energy: there, in units of the median maximum."""
+    return EnergyMinimum(frame, frame, frame, energy, 0.0, at_start=False, at_end=False)
+
+
 def usual_length(minima: tuple[EnergyMinimum, ...]) -> float:
     """The frames that a minimum usually lasts: the median of the certain ones within the clip."""
     lengths = [

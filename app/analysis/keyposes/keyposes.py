@@ -5,7 +5,9 @@ far below the neighboring maxima (T2). Candidates of the global energy have prio
 the local energy. If there are no beats, or only beats estimated from the motion itself, every
 minimum is a candidate, because such beats contain no other information than the minima. A walker
 does not rest. If a motion goes on for long without a keypose, its keyposes are the poses at which
-it is slowest as seen from the waist: at each step, when the feet are farthest apart.
+it is slowest as seen from the waist: at each step, when the feet are farthest apart. Without known
+beats, the far ends of movements that return to the pose they left are keyposes too, such as those
+of kicks and punches (`turning_points`; not in the paper). They do not depend on T1 and T2.
 """
 
 from __future__ import annotations
@@ -19,7 +21,13 @@ import numpy as np
 
 from app.analysis.energy.energy import Energies, EnergyMethod, Weights, energies
 from app.analysis.keyposes.candidates import Candidate, Scope, at_beats, at_energy_minima
-from app.analysis.keyposes.energy_minima import EnergyMinimum, find_energy_minima
+from app.analysis.keyposes.energy_minima import (
+    EnergyMinimum,
+    find_energy_minima,
+    median_maximum,
+    turning_minimum,
+)
+from app.analysis.keyposes.turning_points import turning_points
 from app.analysis.rhythm.beats import Beats, BeatSource, find_beats, given_beats
 from app.motion.frame.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray, IntArray
@@ -54,8 +62,8 @@ MAX_GAP = 3
 class Keyposes:
     """The keyposes of a motion, and how they were found.
 
-    frames: (k,) at ANALYSIS_RATE, rising. times: (k,) seconds. chosen_by: (k,) which energy has
-    the minimum. energies: both curves, (n,) each. beats: the beats that were used; their tempo
+    frames: (k,) at ANALYSIS_RATE, rising. times: (k,) seconds. chosen_by: (k,) what makes
+    each a keypose. energies: both curves, (n,) each. beats: the beats that were used; their tempo
     is None if there are none. method, weights, t1, t2: the parameters of the search.
     """
 
@@ -84,12 +92,13 @@ class Keyposes:
 class Candidates:
     """All candidates of a motion: first the global, then the local ones, each in order of time.
 
-    rate: of their frames, Hz.
+    rate: of their frames, Hz. poses: (n, joints, 3) as seen from the waist, in body lengths.
     """
 
     rate: float
     energies: Energies
     beats: Beats
+    poses: FloatArray = field(repr=False)
     found: tuple[Candidate, ...] = field(repr=False)
 
     @property
@@ -108,6 +117,7 @@ class Candidates:
             chosen += _without_duplicates(new, chosen)
         if not self.on_beats:
             chosen += self._slow_poses(chosen, SLOW_FACTOR * t1)
+            chosen += self._turns(chosen)
         return _apart(chosen, MIN_SEPARATION * self.rate)
 
     def times(self, t1: float = T1, t2: float = T2) -> FloatArray:
@@ -128,6 +138,16 @@ class Candidates:
             long = right - left >= MAX_PAUSE * self.rate or not chosen
             found += between if long and len(between) >= MIN_SLOW_POSES else []
         return _without_duplicates(found, chosen)
+
+    def _turns(self, chosen: list[Candidate]) -> list[Candidate]:
+        """The turning points between two neighboring keyposes, or an end of the clip."""
+        energy = self.energies.local_energy
+        unit = max(median_maximum(energy)[0], 1e-9)
+        bounds = sorted({0, *(c.frame for c in chosen), len(energy) - 1})
+        return [
+            Candidate(frame, None, Scope.TURN, turning_minimum(frame, float(energy[frame]) / unit))
+            for frame in turning_points(self.poses, bounds)
+        ]
 
 
 def find_keyposes(
@@ -188,7 +208,7 @@ def find_candidates(
         for curve, scope in ((curves.global_curve, Scope.GLOBAL), (curves.local_curve, Scope.LOCAL))
         for candidate in find(find_energy_minima(curve), used.times * track.rate, scope)
     )
-    return Candidates(track.rate, curves, used, tuple(found))
+    return Candidates(track.rate, curves, used, track.local, tuple(found))
 
 
 def _given(beats: Beats | FloatArray | None) -> Beats | None:

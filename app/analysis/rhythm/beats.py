@@ -84,6 +84,9 @@ MIN_CONFIDENCE = 0.45
 """The smallest confidence with which beats are reported. 5 % of aimless motions have more, 12 % of
 motions that stop at random, and 97 % of dances."""
 
+END_BEATS = 4
+"""Intervals at an end that give the tempo beyond it. One alone may be off by 20 ms."""
+
 
 class BeatSource(StrEnum):
     """The source of the beats of a clip."""
@@ -109,7 +112,8 @@ class Beats:
     """The beats of a clip.
 
     times: (beats,) seconds, rising. tempo: beats per minute, None if there are no beats.
-    confidence: 0..1, how certain it is that the beats are not chance.
+    confidence: 0..1, how certain it is that the beats are not chance; for those of a recording the
+    probability that their phase and level are those of the dance.
     """
 
     times: FloatArray
@@ -295,7 +299,8 @@ def continued(beats: FloatArray, duration: float) -> FloatArray:
 
     Beats outside the clip are left out.
     """
-    first, last = float(beats[1] - beats[0]), float(beats[-1] - beats[-2])
+    intervals = np.diff(beats)
+    first, last = (float(some.mean()) for some in (intervals[:END_BEATS], intervals[-END_BEATS:]))
     before = np.arange(beats[0] - first, -1e-9, -first)[::-1]
     after = np.arange(beats[-1] + last, duration + 1e-9, last)
     every = np.concatenate([before, beats, after])

@@ -2,7 +2,8 @@
 
 The beats that a client lists come first. Then come the beats of the recording, at the client's
 tempo if it gives one; then the client's tempo alone; then beats estimated from the motion. The
-offset between recording and motion turns the beats of the recording into beats of the clip.
+offset between recording and motion turns the beats of the recording into beats of the clip. They
+count only if the stops of the motion confirm their phase and level (`danced_beats`).
 """
 
 from __future__ import annotations
@@ -15,18 +16,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.analysis.energy.energy import Energies, energies
-from app.analysis.rhythm.audio_beats import find_audio_beats
+from app.analysis.rhythm.audio_beats import heard_beats
 from app.analysis.rhythm.audio_offset import Offset, estimate_offset
 from app.analysis.rhythm.beats import (
     Beats,
     BeatSource,
+    Stops,
     beats_of_tempo,
-    continued,
     find_beats,
     find_stops,
     given_beats,
-    no_beats,
 )
+from app.analysis.rhythm.danced_beats import MIN_CONFIDENCE, DancedBeats, choose_danced
 from app.analysis.rhythm.onsets import Onsets
 from app.motion.frame.body_frame import BodyTrack
 from app.motion.skeleton.recording import Caution
@@ -34,6 +35,9 @@ from app.numerics.arrays import FloatArray
 
 SOURCES = tuple(BeatSource)
 """The stored array `beat_facts` refers to this order. New sources must be appended."""
+
+OFFSETS_TRIED = 4
+"""The offset of a recording is estimated from this many of the likeliest beats."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,21 +84,58 @@ def find_rhythm(
     """
     energy = (rms_energies or energies(track)).global_energy
     duration = (len(energy) - 1) / track.rate
-    audio_beats, offset = no_beats(), None
-    if onsets is not None:
-        audio_beats = find_audio_beats(onsets, given.tempo)
-        # The offset needs every beat: a given tempo may be half of that at which people stop.
-        beats_at_any_tempo = (
-            find_audio_beats(onsets) if given.tempo and given.audio_offset is None else audio_beats
-        )
-        offset = _offset(given, energy, track.rate, beats_at_any_tempo, onsets)
-    shifted = None if offset is None else _shifted(audio_beats, offset, duration)
-    cautions = [] if onsets is None else _cautions_of(given, audio_beats, offset, shifted)
+    placed = None if onsets is None else _placed(given, find_stops(energy, track.rate), onsets)
+    cautions = [] if placed is None else _cautions_of(given, placed)
     if given.beats and not _within(given.beats, duration):
         detail = f"None of the beats that were given lies within the {duration:.2f} s of motion."
         cautions.append(Caution("beats_outside_motion", detail))
         given = replace(given, beats=None)
-    return Rhythm(_beats_by_priority(given, energy, track.rate, shifted), offset, tuple(cautions))
+    beats = _beats_by_priority(given, energy, track.rate, placed)
+    return Rhythm(beats, None if placed is None else placed.offset, tuple(cautions))
+
+
+@dataclass(frozen=True, slots=True)
+class _Placed:
+    """A recording beside its motion.
+
+    is_heard: whether the recording has beats. offset: None if it is unknown. danced: the beats in
+    the motion; None if none is within it, or the offset is unknown.
+    """
+
+    is_heard: bool
+    offset: Offset | None = None
+    danced: DancedBeats | None = None
+
+    @property
+    def confirmed(self) -> DancedBeats | None:
+        """The beats whose phase and level the motion confirms, or None."""
+        is_sure = self.danced is not None and self.danced.confidence >= MIN_CONFIDENCE
+        return self.danced if is_sure else None
+
+
+def _placed(given: RhythmInput, stops: Stops, onsets: Onsets) -> _Placed:
+    heard = heard_beats(onsets, given.tempo)
+    if given.audio_offset is not None:
+        offset = Offset(given.audio_offset, 1.0, True, 0.0, 1.0)
+        return _Placed(bool(heard), offset, choose_danced(heard, stops, offset.seconds))
+    # The offset needs every beat: a given tempo may be half of that at which people stop.
+    at_any_tempo = heard_beats(onsets) if given.tempo else heard
+    best = _Placed(bool(heard))
+    for one in at_any_tempo[:OFFSETS_TRIED]:
+        estimate = estimate_offset(stops, one.beats.times, onsets)
+        if estimate is not None:
+            tried = _Placed(True, estimate, choose_danced(at_any_tempo, stops, estimate.seconds))
+            best = max(best, tried, key=_confidence) if tried.confirmed else best
+    if given.tempo and best.offset is not None:
+        return replace(best, danced=choose_danced(heard, stops, best.offset.seconds))
+    return best
+
+
+def _confidence(placed: _Placed) -> float:
+    """0..1, how certain the beats of the recording in the motion are."""
+    if placed.danced is None or placed.offset is None:
+        return 0.0
+    return min(placed.danced.confidence, placed.offset.confidence)
 
 
 def _within(times: Sequence[float] | FloatArray, duration: float) -> bool:
@@ -103,55 +144,39 @@ def _within(times: Sequence[float] | FloatArray, duration: float) -> bool:
 
 
 def _beats_by_priority(
-    given: RhythmInput, energy: FloatArray, rate: float, shifted: Beats | None
+    given: RhythmInput, energy: FloatArray, rate: float, placed: _Placed | None
 ) -> Beats:
     """The beats from the best source: the client, the recording, a given tempo, the motion."""
     if given.beats:
         return given_beats(np.array(given.beats))
-    if shifted is not None:
-        return shifted
+    if placed is not None and placed.confirmed is not None:
+        heard = placed.confirmed.heard.beats
+        return replace(heard, times=placed.confirmed.times, confidence=_confidence(placed))
     if given.tempo:
         return beats_of_tempo(energy, rate, given.tempo)
     return find_beats(energy, rate)
 
 
-def _offset(
-    given: RhythmInput, energy: FloatArray, rate: float, audio_beats: Beats, onsets: Onsets
-) -> Offset | None:
-    if given.audio_offset is not None:
-        return Offset(given.audio_offset, 1.0, True, 0.0, 1.0)
-    return estimate_offset(find_stops(energy, rate), audio_beats.times, onsets)
-
-
-def _shifted(audio_beats: Beats, offset: Offset, duration: float) -> Beats | None:
-    """The beats of the recording in the time of the motion, continued evenly to both ends.
-
-    None if the recording has fewer than two beats, or none is within the motion.
-    """
-    times = audio_beats.times + offset.seconds
-    if len(times) < 2 or not _within(times, duration):
-        return None
-    is_tempo_given = audio_beats.source is BeatSource.TEMPO
-    return Beats(
-        continued(times, duration),
-        audio_beats.tempo,
-        min(audio_beats.confidence, offset.confidence),
-        BeatSource.TEMPO if is_tempo_given else BeatSource.AUDIO,
-    )
-
-
-def _cautions_of(
-    given: RhythmInput, audio_beats: Beats, offset: Offset | None, shifted: Beats | None
-) -> list[Caution]:
-    if not len(audio_beats.times):
+def _cautions_of(given: RhythmInput, placed: _Placed) -> list[Caution]:
+    offset = placed.offset
+    if not placed.is_heard:
         return [Caution("audio_without_beats", "No beat was heard in the recording.")]
     if offset is None:
         detail = "The motion does not show when the recording begins. Send audio_offset."
         return [Caution("audio_offset_unknown", detail)]
-    if shifted is None:
+    if placed.danced is None:
         detail = "With this audio_offset, no beat of the recording falls into the motion."
         return [Caution("audio_apart", detail)]
-    if not offset.is_given and given.beats is None:
+    if given.beats is not None:
+        return []
+    if placed.confirmed is None:
+        detail = (
+            "The stops of the motion do not confirm any beat of the recording: the likeliest one"
+            f" is right with probability {placed.danced.confidence:.2f}. The recording is not used"
+            " for keyposes. Check audio_offset, or send beats."
+        )
+        return [Caution("audio_beats_doubtful", detail)]
+    if not offset.is_given:
         detail = (
             f"The recording's beginning was estimated as {offset.seconds:.2f} s. It may be wrong"
             f" by whole beats of {offset.beat:.2f} s; it is exact with probability"

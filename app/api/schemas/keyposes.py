@@ -67,7 +67,7 @@ class ThresholdSources(Outgoing):
 
 
 class Keyposes(Outgoing):
-    """Poses at which a motion comes to rest, near its beats if it has beats."""
+    """Poses at which a motion comes to rest, near its beats if it has beats, or turns back."""
 
     method: str
     weights: str
@@ -75,20 +75,25 @@ class Keyposes(Outgoing):
     t2: float
     thresholds: ThresholdSources
     frame_rate: float = Field(description="Frames per second of `frames` and of the energy curves.")
-    tempo: float | None = Field(description="Beats per minute; null if no beat was detected.")
+    tempo: float | None = Field(
+        description="Beats per minute; null if no beat was detected. From the motion alone it is "
+        "rarely found in recorded dances: send `tempo`, `beats` or a recording."
+    )
     beats: list[float] = Field(description="Seconds.")
     beats_source: Literal["given", "tempo", "audio", "motion", "none"] = Field(
         description="The source of the beats. Keyposes are searched only near beats from `given`, "
         "`tempo` or `audio`. Beats from `motion` only select a moment within a rest."
     )
     beats_confidence: float = Field(
-        description="Confidence that the beats are not accidental, 0 to 1."
+        description="0 to 1: for beats from `audio`, the probability that their phase and level "
+        "are those of the dance; for others, the confidence that they are not accidental."
     )
     frames: list[int]
     times: list[float] = Field(description="Seconds.")
-    chosen_by: list[Literal["global", "local"]] = Field(
-        description="The energy that chose each keypose: relative to the floor (global) or "
-        "to the waist."
+    chosen_by: list[Literal["global", "local", "turn"]] = Field(
+        description="What makes each pose a keypose: a minimum of the energy relative to the floor "
+        "(global) or to the waist (local); or it is the far end of a movement that returns to the "
+        "pose it left, such as a strike (turn)."
     )
     roles: list[str] = Field(description="Order of the joints in `poses`.")
     poses: list[list[Point]] = Field(description="(keyposes, 13, 3), meters, Y up.")

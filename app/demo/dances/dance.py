@@ -15,7 +15,7 @@ import numpy as np
 from app.demo.actors import ACTORS, Actor
 from app.demo.clip import DemoClip
 from app.demo.controls import Arm, Controls, Turn, along_arc, standing_controls
-from app.demo.dances.counts import Counts, make_counts
+from app.demo.dances.counts import STOPPING, Counts, Manner, make_counts
 from app.demo.dances.ornaments import with_ornaments
 from app.demo.dances.poses import (
     CROUCH,
@@ -54,9 +54,7 @@ def dance(
     seconds: float = 24.0,
     noise_mm: float = 0.0,
     drift: float = 0.0,
-    passes: float = 0.15,
-    freezes: float = 0.04,
-    ornaments: float = 1.0,
+    manner: Manner = STOPPING,
     actor: Actor | None = None,
     sound: Sound | None = None,
     audio_offset: float | None = None,
@@ -65,21 +63,19 @@ def dance(
 
     bpm: beats per minute. noise_mm: standard deviation of white noise on each coordinate of each
     joint; with noise, the clip is an NPZ file of positions, else a BVH file. drift: the largest
-    relative difference of the tempo from `bpm`. passes, freezes: the share of keyposes that are
-    followed by a beat without a stop, and of those that are held longer. ornaments: factor on
-    their number and size. actor: None draws one. sound: the kind of the recording; it does not
-    change the motion. audio_offset: the time of the motion, in seconds, at which the recording
-    begins; None draws one.
+    relative difference of the tempo from `bpm`. manner: how the dancer moves. actor: None draws
+    one. sound: the kind of the recording; it does not change the motion. audio_offset: the time of
+    the motion, in seconds, at which the recording begins; None draws one.
     """
     draw = np.random.RandomState(seed)
     dancer = actor or _random_dancer(draw)
     take = _take(draw, dancer)
-    counts = make_counts(draw, bpm, seconds, drift=drift, passes=passes, freezes=freezes)
+    counts = make_counts(draw, bpm, seconds, manner, drift=drift)
     last = counts.moments[-1].leave + BEATS_AT_END * counts.interval
     times = take.clock(last)
     counts = replace(counts, beats=counts.beats[counts.beats < times[-1]])
     controls = _performed(draw, take, counts, times)
-    controls = with_ornaments(controls, times, counts, draw, ornaments)
+    controls = with_ornaments(controls, times, counts, draw, manner)
     controls = lowered_to_reach(with_body_sway(controls, take, times), take.rig, times)
     controls = along_arc(controls, take.heading, 0.0)
     stem = f"{dancer.name}/choreography_{seed:02d}"

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.interpolate import make_interp_spline
 
 from app.demo.controls import Arm
+from app.demo.curves import quintic_curve
 from app.demo.dances.counts import Moment
 from app.demo.keys import ArmPose
 from app.numerics.arrays import FloatArray
@@ -58,6 +59,10 @@ PART_DELAY = 0.02
 
 MIN_REST = 0.02
 """Seconds: the shortest rest of a part."""
+
+
+SPEED_FACTOR = (0.4, 1.6)
+"""The range of the factor between the speed of a part of the body and that of its moment."""
 
 
 def draw_poses(
@@ -115,25 +120,34 @@ def _within_limits(row: FloatArray) -> FloatArray:
 def weights(times: FloatArray, moments: tuple[Moment, ...]) -> FloatArray:
     """(frames, moments + 1) the weight of each pose at `times` (frames,) s; weights sum to 1.
 
-    The first pose is the resting pose. Between two keyposes, the weights follow the curve of least
+    The first pose is the resting pose. Between two stops, the weights follow the curve of least
     jerk through the other poses (Flash & Hogan 1985: quintic pieces that are smooth in four
-    derivatives).
+    derivatives). Its time is warped, so that the body is slow at soft keyposes.
     """
     shares = np.zeros((len(times), len(moments) + 1))
     shares[times < moments[0].arrive, 0] = 1.0
-    held = [0, *(k + 1 for k, moment in enumerate(moments) if moment.is_held)]
-    for before, after in pairwise(held):
-        end = moments[after - 1]
+    stops = [0, *(k + 1 for k, moment in enumerate(moments) if moment.is_stop)]
+    for before, after in pairwise(stops):
+        end, between = moments[after - 1], moments[before : after - 1]
         start = moments[before - 1].leave if before else end.arrive - FULL_MOVE
-        passed = [moments[k - 1].arrive for k in range(before + 1, after)]
+        course = _course(np.array([start, *(passed.time for passed in between), end.arrive]))
         during = (times >= start) & (times < end.arrive)
-        course = _course(np.array([start, *passed, end.arrive]))
+        warped = _warped(times[during], start, between, end.arrive)
         shares[during] = 0.0
-        shares[during, before : after + 1] = course(times[during])
+        shares[during, before : after + 1] = course(warped)
         rest = (times >= end.arrive) & (times < end.leave)
         shares[rest, after] = 1.0
-    shares[times >= moments[held[-1] - 1].leave, held[-1]] = 1.0
+    shares[times >= moments[stops[-1] - 1].leave, stops[-1]] = 1.0
     return shares
+
+
+def _warped(times: FloatArray, start: float, moments: tuple[Moment, ...], end: float) -> FloatArray:
+    """(t,) `times` (t,) in seconds, made slow at the soft keyposes among `moments`.
+
+    The time of each moment stays. start, end: of the movement, s.
+    """
+    passed = [(m.time, m.time, m.speed if m.is_held else 1.0, 0.0) for m in moments]
+    return quintic_curve(times, [(start, start, 1.0, 0.0), *passed, (end, end, 1.0, 0.0)])
 
 
 def with_part_lag(
@@ -146,7 +160,17 @@ def with_part_lag(
         leave = max(moment.leave + longer, moment.arrive + late + MIN_REST)
         if not moment.is_held:
             leave = moment.leave + late
-        delayed.append(replace(moment, arrive=moment.arrive + late, leave=leave))
+        # Arms, trunk and hips do not slow down alike.
+        speed = moment.speed * draw.uniform(*SPEED_FACTOR) if moment.speed else 0.0
+        delayed.append(
+            replace(
+                moment,
+                arrive=moment.arrive + late,
+                time=moment.time + late,
+                leave=leave,
+                speed=speed,
+            )
+        )
     return tuple(delayed)
 
 

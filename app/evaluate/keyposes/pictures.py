@@ -27,7 +27,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
-COLORS = {Scope.GLOBAL: "#D55E00", Scope.LOCAL: "#009E73"}
+COLORS = {Scope.GLOBAL: "#D55E00", Scope.LOCAL: "#009E73", Scope.TURN: "#CC79A7"}
+REASONS = {Scope.GLOBAL: "global energy", Scope.LOCAL: "local energy", Scope.TURN: "turning point"}
 ANNOTATED = "#0072B2"
 BEAT = "#888888"
 INCHES_PER_SECOND = 0.9
@@ -109,7 +110,7 @@ def _legend(seen: KeyposesView) -> dict[str, Line2D]:
     from matplotlib.lines import Line2D
 
     lines = {
-        f"keypose by {scope.value} energy": Line2D([], [], color=color, linewidth=1.8)
+        f"keypose by {REASONS[scope]}": Line2D([], [], color=color, linewidth=1.8)
         for scope, color in COLORS.items()
     }
     if seen.named is not None:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import numpy as np
 import pytest
 
-from app.analysis.rhythm.audio_beats import TIGHTNESS, find_audio_beats
+from app.analysis.rhythm.audio_beats import TIGHTNESS, find_audio_beats, heard_beats
 from app.analysis.rhythm.beat_tracking import track
 from app.analysis.rhythm.beats import BeatSource
 from app.analysis.rhythm.onsets import find_onsets
@@ -25,10 +27,30 @@ def test_the_clicks_of_a_metronome_are_found_exactly(bpm: float) -> None:
 
 
 @pytest.mark.parametrize("style", STYLES)
-def test_the_tempo_of_every_style_is_found(style: str) -> None:
+def test_the_beats_of_every_style_are_heard(style: str) -> None:
     samples, beats = piece(12, style, 100.0, drift=0.03, seconds=24.0)
-    found = find_audio_beats(find_onsets(samples, SAMPLE_RATE))
-    assert f_score(found.times, beats) > 0.9
+    heard = heard_beats(find_onsets(samples, SAMPLE_RATE))
+    assert max(f_score(one.beats.times, beats) for one in heard) > 0.9
+    # Of the likeliest ones, at least every second one is a beat.
+    assert f_score(heard[0].beats.times, beats) > 0.6
+    scores = [one.score for one in heard]
+    assert scores == sorted(scores, reverse=True)
+
+
+def test_no_two_of_the_heard_beats_are_the_same() -> None:
+    samples, _ = piece(15, "rock", 100.0, seconds=16.0)
+    times = [one.beats.times for one in heard_beats(find_onsets(samples, SAMPLE_RATE))]
+    assert len(times) > 4
+    for some, others in combinations(times, 2):
+        assert f_score(some, others, within=0.02) < 0.95
+
+
+def test_beats_of_a_given_tempo_differ_in_phase() -> None:
+    samples, _ = piece(13, "disco", 120.0, seconds=12.0)
+    one, other = heard_beats(find_onsets(samples, SAMPLE_RATE), tempo=120.0)
+    assert (one.beats.tempo, other.beats.tempo) == (120.0, 120.0)
+    distance = np.abs(one.beats.times[:, None] - other.beats.times).min(axis=1)
+    assert np.median(distance) == pytest.approx(0.25, abs=0.03)
 
 
 @pytest.mark.parametrize("kind", WITHOUT_BEAT)

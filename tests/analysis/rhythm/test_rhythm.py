@@ -45,17 +45,36 @@ def test_a_known_offset_is_estimated_up_to_whole_beats(sound: Sound, offset: flo
     assert np.abs(beats[:, None] - rhythm.beats.times).min(axis=1).max() < 0.09
 
 
+BEAT = 60.0 / 95.0
+"""Seconds: the beat of seed 5."""
+
+
 def test_a_given_offset_is_used() -> None:
     _, track, onsets = made(5, Sound.MUSIC, 0.0)
-    rhythm = find_rhythm(track, RhythmInput(audio_offset=7.0), onsets)
+    rhythm = find_rhythm(track, RhythmInput(audio_offset=8 * BEAT), onsets)
     assert rhythm.offset is not None
-    assert (rhythm.offset.seconds, rhythm.offset.is_given) == (7.0, True)
+    assert (rhythm.offset.seconds, rhythm.offset.is_given) == (8 * BEAT, True)
+    assert rhythm.beats.source is BeatSource.AUDIO
+    assert 0.5 < rhythm.beats.confidence < 1.0
     assert rhythm.cautions == ()
+
+
+def test_beats_that_the_motion_does_not_confirm_are_not_used() -> None:
+    _, track, onsets = made(5, Sound.CLICKS, 0.0)
+    rhythm, alone = (
+        find_rhythm(track, RhythmInput(audio_offset=0.3 * BEAT), onsets),
+        find_rhythm(track),
+    )
+    assert rhythm.offset is not None
+    assert [caution.code for caution in rhythm.cautions] == ["audio_beats_doubtful"]
+    np.testing.assert_array_equal(rhythm.beats.times, alone.beats.times)
+    assert rhythm.beats.source is alone.beats.source is not BeatSource.AUDIO
 
 
 def test_beats_continue_where_the_recording_is_silent() -> None:
     _, track, onsets = made(5, Sound.MUSIC, 0.0)
-    late = find_rhythm(track, RhythmInput(audio_offset=4.0), onsets).beats
+    late = find_rhythm(track, RhythmInput(audio_offset=6 * BEAT), onsets).beats
+    assert late.source is BeatSource.AUDIO
     assert 0.0 <= late.times[0] < 1.0
     assert late.times[-1] <= energies(track).global_energy.size / 30.0
 

@@ -41,17 +41,20 @@ class ThresholdSources(Record):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Keyposes(Record):
-    """Poses at which a motion comes to rest, near its beats if it has beats.
+    """Poses at which a motion comes to rest, near its beats if it has beats, or turns back.
 
     frame_rate: Frames per second of `frames` and of the energy curves.
-    tempo: Beats per minute; null if no beat was detected.
+    tempo: Beats per minute; null if no beat was detected. From the motion alone it is rarely
+    found in recorded dances: send `tempo`, `beats` or a recording.
     beats: Seconds.
     beats_source: The source of the beats. Keyposes are searched only near beats from `given`,
     `tempo` or `audio`. Beats from `motion` only select a moment within a rest.
-    beats_confidence: Confidence that the beats are not accidental, 0 to 1.
+    beats_confidence: 0 to 1: for beats from `audio`, the probability that their phase and level
+    are those of the dance; for others, the confidence that they are not accidental.
     times: Seconds.
-    chosen_by: The energy that chose each keypose: relative to the floor (global) or to the
-    waist.
+    chosen_by: What makes each pose a keypose: a minimum of the energy relative to the floor
+    (global) or to the waist (local); or it is the far end of a movement that returns to the
+    pose it left, such as a strike (turn).
     roles: Order of the joints in `poses`.
     poses: (keyposes, 13, 3), meters, Y up.
     annotated: Times of the keyposes that a person named, seconds; null if there are none.
@@ -69,7 +72,7 @@ class Keyposes(Record):
     beats_confidence: float
     frames: list[int]
     times: list[float]
-    chosen_by: list[Literal["global", "local"]]
+    chosen_by: list[Literal["global", "local", "turn"]]
     roles: list[str]
     poses: Array
     energy: Energy
