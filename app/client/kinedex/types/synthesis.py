@@ -49,8 +49,8 @@ class Quality(Record):
     be the nearest real clip. Learned when the model was fitted, from combinations of person and
     task that were left out and synthesized, by the number of given persons or tasks, by
     `follows`, and by whether the nearest clip of others shows the task. Null for `seen`.
-    expected_given: Number of persons (new_task) or tasks (new_person) that it holds for: those
-    of this motion, or the largest number that was tried.
+    expected_given: Number of persons (new_task) or tasks (new_person) that it is for: that of
+    this motion, or the largest number that was tried.
     expected_trials: Number of motions that were left out and synthesized to learn this.
     real_hit: Share of real takes of such combinations whose nearest other clip is of the same
     combination: an upper bound for `expected_hit`. Null if none has two takes.
