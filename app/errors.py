@@ -177,6 +177,12 @@ class NotEnoughLabels(Conflict):
     code = "not_enough_labels"
 
 
+class NoSignatures(Conflict):
+    """A model of this kind has no signatures."""
+
+    code = "no_signatures"
+
+
 class NotEnoughKeyposes(Conflict):
     """Too few keyposes were found for this."""
 

@@ -8,7 +8,8 @@ i iterations; motion_sample (1250,);
 angle_sample (642,); motion_shape (1378,); symbol_statistics (131,); window_vectors_* (w, 125)
 float16 and window_spans_* (w, 2) seconds, for 1s, 2s and 4s; beat_times (b,) float64
 seconds, beat_facts (3,) float64 (see `rhythm`); keypose_frames (k,)
-int32, indices of the n frames; pose_cover (p, 38), the frame, radius and vector of
+int32, indices of the n frames; keypose_thresholds (2,) float64, the T1 and T2 that found them;
+pose_cover (p, 38), the frame, radius and vector of
 poses that represent all poses; segment_spans (s, 2) seconds, segment_vectors (s, 185)
 float16, segment_cycles (c, 3) int32. The motion symbol, with K states, has
 symbol_means (K, 26), symbol_variances (K, 26) and symbol_transitions (K, K).
@@ -104,6 +105,7 @@ def analyze(
         ).frames
         arrays["pose_cover"] = pose_cover(arrays["role_positions"], keyposes)
         arrays |= keypose_arrays(keyposes, arrays["features_10hz"])
+        arrays["keypose_thresholds"] = np.array([t1, t2], dtype=np.float64)
     offset = None if rhythm.offset is None else rhythm.offset.seconds
     measures = measure(track, rms_energies, rhythm.beats.tempo)
     cautions = (*_of_start(motion), *rhythm.cautions)

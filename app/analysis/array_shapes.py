@@ -38,6 +38,7 @@ SHAPES: Mapping[str, tuple[int | None, ...]] = {
     "beat_facts": (3,),
     "pose_cover": (None, 38),
     "keypose_frames": (None,),
+    "keypose_thresholds": (2,),
     "segment_spans": (None, 2),
     "segment_vectors": (None, 185),
     "segment_cycles": (None, 3),

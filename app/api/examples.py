@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.api.guard.callers import is_open
-from app.services.library.fitted_models import KINDS_WITH_UNKNOWN
+from app.services.library.fitted_models import KINDS_WITH_SIGNATURES, KINDS_WITH_UNKNOWN
 from app.services.library.library import Library
 from app.store import evaluations, models, studies
 from app.store.clips import listing as clip_listing
@@ -45,11 +45,14 @@ def _of_others(tx: Tx) -> dict[str, str | None]:
     pairs = studies.list_pairs(tx, limit=1).items
     registered = webhooks.list_all(tx)
     kept = evaluations.list_page(tx, limit=1).items
-    recognizer = [one for one in models.list_current(tx) if one.kind in KINDS_WITH_UNKNOWN]
+    fitted = models.list_current(tx)
+    recognizer = [one for one in fitted if one.kind in KINDS_WITH_UNKNOWN]
+    multilinear = [one for one in fitted if one.kind in KINDS_WITH_SIGNATURES]
     return {
         "JOB_ID": analysis[0].id if analysis else None,
         "PAIR_ID": pairs[0].id if pairs else None,
         "EVALUATION_ID": kept[0].id if kept else None,
         "WEBHOOK_ID": registered[0].id if registered else None,
         "MODEL_ID": recognizer[0].id if recognizer else None,
+        "SIGNATURE_MODEL_ID": multilinear[0].id if multilinear else None,
     }

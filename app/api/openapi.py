@@ -67,6 +67,7 @@ _CONFLICTS: dict[type[KinedexError], KinedexError] = {
         errors.ClipNotReady: "The clip clip_1 is queued; ask again after that.",
         errors.Conflict: None,
         errors.ModelNotFitted: None,
+        errors.NoSignatures: None,
         errors.NotEnoughKeyposes: None,
         errors.NotEnoughLabels: None,
     }.items()
@@ -108,6 +109,7 @@ AudioClipId = Annotated[str, _id("a clip with a recording", "AUDIO_CLIP_ID")]
 JobId = Annotated[str, _id("a job", "JOB_ID")]
 PairId = Annotated[str, _id("a pair", "PAIR_ID")]
 ModelId = Annotated[str, _id("a recognizer", "MODEL_ID")]
+SignatureModelId = Annotated[str, _id("a multilinear model", "SIGNATURE_MODEL_ID")]
 EvaluationId = Annotated[str, _id("an evaluation", "EVALUATION_ID")]
 WebhookId = Annotated[str, _id("a webhook", "WEBHOOK_ID")]
 

@@ -26,7 +26,7 @@ KEEP_BUT_ASK = "private, no-cache"
 UNCHANGED = {"description": "The answer with the tag in If-None-Match is still current."}
 """The answer 304 in the description of a route."""
 NOT_OF_ONE_CLIP = "dimensions"
-"""With this query parameter, an answer depends on learned thresholds and on other clips."""
+"""With this query parameter, an answer depends on other clips."""
 _threads = OwnThreads(4)
 
 

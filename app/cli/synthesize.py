@@ -67,6 +67,8 @@ def _quality_rows(made: Synthesis, path: Path, size: int) -> list[tuple[str, obj
         ("its labels", f"{quality.nearest_person}, {quality.nearest_task}"),
         ("expected accuracy", _expected_accuracy(quality)),
         ("speed of sliding feet", f"{quality.skate:.2f} m/s{_real_skate(quality.real_skate)}"),
+        ("jerk", f"{quality.jerk:.0f} m/s³{_real_jerk(quality.real_jerk)}"),
+        *(("warning", warning.detail) for warning in quality.warnings),
     ]
     if made.clip.id is not None:
         rows.append(("stored as", made.clip.id))
@@ -93,8 +95,8 @@ def _expected_accuracy(quality: Quality) -> str:
     if quality.expected_hit is None:
         return "not measured"
     return (
-        f"{quality.expected_hit:.0%} of {quality.expected_trials} held-out motions, made from"
-        f" {quality.expected_given} takes{_real_accuracy(quality.real_hit)}"
+        f"{quality.expected_hit:.0%} (learned from {quality.expected_trials} held-out motions)"
+        f"{_real_accuracy(quality.real_hit)}"
     )
 
 
@@ -104,6 +106,10 @@ def _real_accuracy(share: float | None) -> str:
 
 def _real_skate(speed: float | None) -> str:
     return "" if speed is None else f", in real takes {speed:.2f} m/s"
+
+
+def _real_jerk(jerk: float | None) -> str:
+    return "" if jerk is None else f", in real takes {jerk:.0f} m/s³"
 
 
 def _file_name(name: str) -> str:

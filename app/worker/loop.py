@@ -34,6 +34,7 @@ from app.store.workers import Heartbeat
 from app.worker.deliveries import Deliveries
 from app.worker.executors import JobExecutors
 from app.worker.expiry import Expiry
+from app.worker.learned_thresholds import LearnedThresholds
 from app.worker.running import RunningJob
 from app.worker.sweeps import Sweeps
 
@@ -100,6 +101,7 @@ class Worker:
         self._watch_s = min(settings.job_heartbeat_s, settings.job_lease_s / WATCHES_PER_LEASE)
         self._last_watch = -math.inf
         self._last_fit_check = 0.0
+        self._thresholds = LearnedThresholds(lib)
         self._expiry = Expiry(lib)
 
     def run(self, stop: threading.Event, until: Callable[[Library], bool] | None = None) -> None:
@@ -109,7 +111,7 @@ class Worker:
                 self._beat_if_due()
                 self._expiry.remove_if_due()
                 self._recover_if_due()
-                is_idle = not self.turn()
+                is_idle = not (self.turn() or self._has_requeued())
                 if is_idle and not self._running and until is not None and until(self.lib):
                     return
                 if is_idle and self._may_fit():
@@ -256,6 +258,10 @@ class Worker:
     def _may_fit(self) -> bool:
         """Whether nothing runs but an evaluation: a fit does not wait for its end."""
         return all(each.claimed.job.kind is JobKind.EVALUATE for each in self._running)
+
+    def _has_requeued(self) -> bool:
+        """Whether clips have been queued because a fit has learned other thresholds."""
+        return self._may_fit() and self._thresholds.requeue_if_changed()
 
     def _request_fit_if_due(self) -> None:
         if time.monotonic() - self._last_fit_check < FIT_CHECK_S:

@@ -8,6 +8,7 @@ import pytest
 from app.analysis.analyze import analyze, describe_for_search
 from app.analysis.array_shapes import SHAPES, is_usable
 from app.analysis.descriptors.windows import WINDOW_SCALES, window_frames
+from app.analysis.keyposes.keyposes import T1, T2
 from app.analysis.rhythm.rhythm import BEAT_ARRAYS
 from app.numerics.arrays import FloatArray
 from tests.bodies import motion_of, standing, walking, waving
@@ -33,7 +34,7 @@ def test_every_array_has_its_shape(body: FloatArray) -> None:
 @pytest.mark.parametrize("body", BODIES.values(), ids=BODIES.keys())
 def test_arrays_are_finite_with_documented_shapes_and_types(body: FloatArray) -> None:
     arrays = dict(analyze(motion_of(body)).arrays)
-    keyposes = arrays.pop("keypose_frames")
+    keyposes, thresholds = arrays.pop("keypose_frames"), arrays.pop("keypose_thresholds")
     beats = {name: arrays.pop(name) for name in BEAT_ARRAYS}
     windows = {scale: arrays.pop(scale.vectors) for scale in WINDOW_SCALES}
     spans = {scale: arrays.pop(scale.spans) for scale in WINDOW_SCALES}
@@ -55,6 +56,7 @@ def test_arrays_are_finite_with_documented_shapes_and_types(body: FloatArray) ->
     assert all(np.isfinite(array).all() for array in arrays.values())
     assert all(a.dtype == np.float64 and np.isfinite(a).all() for a in beats.values())
     assert (beats["beat_times"].ndim, beats["beat_facts"].shape) == (1, (3,))
+    assert (thresholds.dtype, thresholds.tolist()) == (np.float64, [T1, T2])
     assert (keyposes.dtype, keyposes.ndim) == (np.int32, 1)
     assert (np.diff(keyposes, prepend=-1, append=n) > 0).all()
     assert set(keyposes.tolist()) <= set(arrays["pose_cover"][:, 0].astype(int).tolist())
@@ -76,7 +78,7 @@ def test_a_query_has_the_same_arrays_as_a_stored_clip() -> None:
     query = describe_for_search(motion_of(BODIES["walk"])).arrays
     assert set(stored) - set(query) == {
         "keypose_frames", "pose_cover", "symbol_means", "symbol_variances", "symbol_transitions",
-        *SEGMENT_TYPES, *BEAT_ARRAYS,
+        "keypose_thresholds", *SEGMENT_TYPES, *BEAT_ARRAYS,
     }  # fmt: skip
     assert all(stored[name].tobytes() == query[name].tobytes() for name in query)
 

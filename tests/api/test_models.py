@@ -50,15 +50,7 @@ def test_the_confusion_matrix_counts_every_labeled_clip(demo: httpx2.Client, fac
     assert demo.get("/v1/models/confusion", params={"factor": "word"}).status_code == 422
 
 
-def test_signatures_are_points_of_persons(demo: httpx2.Client) -> None:
-    found = demo.get("/v1/models/signatures").json()
-    persons = [one["person"] for one in found["items"]]
-    assert persons == sorted(persons)
-    assert {"ada", "bruno"} <= set(persons)  # another test may have added more
-    assert 0 < found["variance_kept"] <= 1
-
-
-def test_confusions_and_signatures_need_models(idle: httpx2.Client) -> None:
-    for path in ("confusion", "confusion/clips?label=a&guess=b", "signatures"):
+def test_confusions_need_models(idle: httpx2.Client) -> None:
+    for path in ("confusion", "confusion/clips?label=a&guess=b"):
         answer = idle.get(f"/v1/models/{path}")
         assert (answer.status_code, answer.json()["code"]) == (409, "model_not_fitted")

@@ -69,6 +69,12 @@ say "Who is it, and what are they doing? Of a file, or of a stored clip by Vasil
 call "$B/v1/recognize" -F file=@query.bvh
 call "$B/v1/recognize" --json "{\"clip_id\": \"$ID\", \"method\": \"signatures\"}" | pick task.label
 
+say "Who moves alike? The signatures of persons, and an eigenmotion as frames."
+MODEL=$(call "$B/v1/models" | python3 -c 'import json, sys
+print(next(m["id"] for m in json.load(sys.stdin)["items"] if m["kind"] == "signatures"))')
+call "$B/v1/models/$MODEL/signatures?eigenmotions=1&limit=1" | pick persons.items.0.name
+call "$B/v1/models/$MODEL/eigenmotions/2/motion?deviations=2" | pick frame_rate
+
 say "Synthesize a walk by the person of a clip, on their skeleton. Which clip is like it?"
 save walk.json "$B/v1/synthesize" --json "{\"clip_ids\": [\"$ID\"], \"task\": \"walk\", \"bvh\": true}"
 pick quality.nearest_clip.name <walk.json

@@ -14,14 +14,12 @@ Run: pytest -m bench -s tests/bench/test_synthesis.py
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
 
 import numpy as np
 import pytest
 
-from app.analysis.descriptors.motion_shape import moments_of, motion_shape
+from app.analysis.descriptors.motion_shape import motion_shape
 from app.demo import demo_clips
-from app.formats.read import read_recording
 from app.models.held_out.synthesis import (
     NEW_PERSON,
     NEW_TASK,
@@ -31,19 +29,13 @@ from app.models.held_out.synthesis import (
     nearest_labels,
     synthesized,
 )
-from app.models.synthesis.body import Donor, embody, same_body
-from app.models.synthesis.model import Synthesis, fit_synthesis
-from app.models.synthesis.motion import course_of
-from app.motion.canonical.canonical import canonicalize
-from app.motion.frame.body_frame import ANALYSIS_RATE, BodyTrack, body_track
+from app.models.synthesis.model import Synthesis
+from app.motion.frame.body_frame import body_track
 from app.motion.frame.foot_contact import FEET, skating
 from app.motion.motion import Motion
-from app.motion.posing.file_rotations import animation_of_recording
 from app.motion.roles.joint_roles import SUN_ROLES
-from app.motion.skeleton.animation import Animation
-from app.motion.skeleton.recording import Recording
+from tests.bench.made_motions import Clip, clip_of, fitted, made, real_motions
 from tests.bench.page import Section
-from tests.real_clips import manifest, real_clips
 
 FIGURES = Section(
     "synthesis",
@@ -61,47 +53,14 @@ MADE = 40
 HELD = ("masculine", "normal", "youthful")
 
 
-@dataclass(frozen=True)
-class Clip:
-    person: str
-    task: str
-    path: str
-    motion: Motion
-    track: BodyTrack
-    shape: np.ndarray
-    recording: Recording
-
-
-def _clip(path: str, person: str, task: str, content: bytes, fps: float | None = None) -> Clip:
-    recording = read_recording(content)
-    motion = canonicalize(recording, frame_rate=fps)
-    track = body_track(motion)
-    return Clip(person, task, path, motion, track, motion_shape(track), recording)
-
-
 @pytest.fixture(scope="module")
 def real() -> list[Clip]:
-    rows = [row for row in manifest() if row["path"].endswith(".bvh") and row["person"]]
-    return [
-        _clip(
-            row["path"],
-            row["person"],
-            row["task"],
-            (real_clips() / row["path"]).read_bytes(),
-            float(row["fps"]),
-        )
-        for row in rows
-    ]
+    return real_motions()
 
 
 @pytest.fixture(scope="module")
 def second(real: list[Clip]) -> list[Clip]:
     return [clip for clip in real if clip.path.startswith("bandai-namco-2")]
-
-
-def fitted(clips: list[Clip]) -> Synthesis:
-    shapes = np.stack([clip.shape for clip in clips])
-    return fit_synthesis(shapes, [clip.person for clip in clips], [clip.task for clip in clips])
 
 
 def test_dataset_2(second: list[Clip]) -> None:
@@ -149,7 +108,7 @@ def test_the_whole_data_set(real: list[Clip]) -> None:
 
 @pytest.fixture(scope="module")
 def demo() -> list[Clip]:
-    return [_clip(c.path, c.person, c.task, c.content) for c in demo_clips(takes=2)]
+    return [clip_of(c.path, c.person, c.task, c.content) for c in demo_clips(takes=2)]
 
 
 def test_the_demo_library(demo: list[Clip]) -> None:
@@ -179,7 +138,7 @@ def _made_whole(title: str, clips: list[Clip], kind: str) -> dict[str, float]:
     trials = draw_trials(record, kind, 5, MADE)
     rows, start = [], time.perf_counter()
     for trial in trials:
-        motion = _made(record, clips, kind, trial)
+        motion = made(record, clips, kind, trial)
         again = motion_shape(body_track(motion))
         found = nearest_labels(record, again)
         real = [c.motion for c in clips if (c.person, c.task) == (trial.person, trial.task)]
@@ -219,56 +178,6 @@ def _table(title: str, record: Synthesis, trials: int) -> dict[str, list[dict[st
                 f"{row['task_mean']:.3f}      {row['real'] or float('nan'):.3f}"
             )
     return rows
-
-
-def _made(record: Synthesis, clips: list[Clip], kind: str, trial: Trial) -> Motion:
-    """Make the motion as the service does, without the clips of the cell itself."""
-    predicted = synthesized(record, kind, trial)
-    shape = predicted.shape
-    away = record.distances(shape)
-    tasks = trial.given if kind == NEW_PERSON else record.tasks
-    own = [
-        i
-        for i, clip in enumerate(clips)
-        if clip.person == trial.person and clip.task in tasks and clip.task != trial.task
-    ]
-    others = trial.given if kind == NEW_TASK else record.persons
-    if predicted.follows is not None:
-        others = (predicted.follows,)
-    takes = [
-        i
-        for i, clip in enumerate(clips)
-        if clip.task == trial.task and clip.person in others and clip.person != trial.person
-    ]
-    donors = same_body([_donor(clips[i]) for i in sorted(own, key=lambda i: away[i])[:5]])
-    take, take_shape = None, None
-    if shape[-1] < 0.5:
-        nearest = clips[min(takes, key=lambda i: away[i])]
-        take, take_shape = moments_of(nearest.track), nearest.shape
-    length = float(np.median([donor.track.body_length for donor in donors]))
-    course = course_of(shape, length, take=take, take_shape=take_shape)
-    return _as_motion(embody(course, donors), donors[0])
-
-
-def _donor(clip: Clip) -> Donor:
-    animation = animation_of_recording(clip.recording, clip.motion)
-    assert animation is not None
-    return Donor(animation.resampled(ANALYSIS_RATE), clip.track, dict(clip.motion.roles))
-
-
-def _as_motion(animation: Animation, donor: Donor) -> Motion:
-    skeleton = animation.skeleton
-    return Motion(
-        "bvh",
-        skeleton.names,
-        skeleton.parents,
-        animation.positions().astype(np.float32),
-        donor.joints,
-        (),
-        ANALYSIS_RATE,
-        ANALYSIS_RATE,
-        1.0,
-    )
 
 
 def _skate(motion: Motion) -> float:

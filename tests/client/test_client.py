@@ -106,6 +106,17 @@ def test_motions_are_arrays(client: Kinedex) -> None:
     assert client.clips.thumbnail(clip).startswith("<svg")
 
 
+def test_signatures_and_eigenmotions_are_read(client: Kinedex) -> None:
+    model = next(model for model in client.models.list().items if model.kind == "signatures")
+    found = client.models.signatures(model.id, eigenmotions=2, limit=3)
+    assert [one.number for one in found.eigenmotions] == [1, 2]
+    assert len(found.clips) == 3
+    assert np.shape(found.persons.items[0].vector) == np.shape(found.persons.singular_values)
+    played = client.models.eigenmotion(model.id, 1, deviations=0, seconds=1)
+    raw = client.models.eigenmotion_array(model.id, 1, deviations=0, seconds=1)
+    assert np.allclose(played.positions, raw.positions, atol=1e-5)
+
+
 def test_an_upload_shows_its_progress_and_its_job_can_be_awaited(
     client: Kinedex, take: DemoClip, tmp_path: Path
 ) -> None:

@@ -77,14 +77,39 @@ def test_the_false_accept_rate_is_set(page: Page) -> None:
 
 def test_people_tasks_and_words_lead_to_their_clips(page: Page) -> None:
     page.goto("/models?tab=persons")
-    signatures = page.get_by_role("group", name="Signatures of persons")
-    expect(signatures.get_by_role("link")).to_have_count(2)
     expect(page.get_by_role("region", name="List of persons")).to_contain_text("2 persons")
     page.get_by_role("button", name="Words", exact=True).click()
     expect(page.get_by_role("table", name="Figures of words by method")).to_be_visible()
     page.get_by_role("button", name="Tasks", exact=True).click()
     page.get_by_role("region", name="List of tasks").get_by_role("link", name="kick").click()
     expect(page).to_have_url(re.compile(r"/\?task=kick$"))
+
+
+def test_signatures_are_plotted_compared_and_played(page: Page) -> None:
+    page.goto("/models")
+    page.get_by_role("button", name="Signatures").click()
+    persons = page.get_by_role("group", name="Signatures of persons")
+    expect(persons.get_by_role("link")).to_have_count(2)
+    tasks = page.get_by_role("group", name="Signatures of tasks")
+    expect(tasks.get_by_role("link")).to_have_count(3)
+    weights = page.get_by_role("table", name="Weights of clips")
+    expect(weights.get_by_role("rowheader")).to_have_count(12)
+    player = page.get_by_role("region", name="Player of the eigenmotion")
+    expect(player.locator(".head")).to_have_text(["− 2 SD", "mean", "+ 2 SD"])
+    assert colors_of(player.locator("canvas")) > 100
+    page.get_by_role("combobox", name="Eigenmotion").select_option("3")
+    page.get_by_label("Standard deviations").fill("3")
+    expect(player.locator(".head")).to_have_text(["− 3 SD", "mean", "+ 3 SD"])
+    page.get_by_label("Coordinates").select_option("multilinear")
+    expect(persons.get_by_role("link")).to_have_count(2)
+    address = query_of(page)
+    assert address["eigenmotion"] == ["3"]
+    assert (address["deviations"], address["model"]) == (["3"], ["multilinear"])
+    page.reload()
+    expect(player.locator(".head")).to_have_text(["− 3 SD", "mean", "+ 3 SD"])
+    expect(page.get_by_role("heading", name="Eigenmotion 3")).to_be_visible()
+    weights.get_by_role("link").first.click()
+    expect(page).to_have_url(re.compile(r"/clips/clip_\w+$"))
 
 
 def test_models_are_fitted_again(browser: Browser, own: Live) -> None:
@@ -122,7 +147,8 @@ def test_it_has_no_serious_fault(
     with opened(browser, demo_service.url, size=size, scheme=scheme) as page:
         for address, shown in (
             ("/models?label=kick&guess=kick", page.get_by_role("region", name="Clips of the cell")),
-            ("/models?tab=persons", page.get_by_role("group", name="Signatures of persons")),
+            ("/models?tab=persons", page.get_by_role("region", name="List of persons")),
+            ("/models?tab=signatures", page.get_by_role("table", name="Weights of clips")),
             ("/models?tab=words", page.get_by_role("table")),
             ("/models?tab=all", page.locator("details").first),
             ("/study?tally=1", page.get_by_role("region", name="Votes so far")),

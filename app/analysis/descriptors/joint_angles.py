@@ -35,7 +35,7 @@ _R = JointRole
 
 
 @dataclass(frozen=True, slots=True)
-class _Ball:
+class Ball:
     """A hip or shoulder: the limb goes from `start` to `middle`, and the next limb to `end`.
 
     rest: the direction of the limb whose swing is 0. hinge: the axis about which the next joint
@@ -52,13 +52,13 @@ class _Ball:
 
 
 _H, _Q, _S = np.sqrt(0.5), 0.5 * np.sqrt(0.5), np.sqrt(0.75)
-_BALLS = (
-    _Ball("left_hip", _R.HIPS, _R.LEFT_KNEE, _R.LEFT_FOOT, (0, -1, 0), (1, 0, 0)),
-    _Ball("right_hip", _R.HIPS, _R.RIGHT_KNEE, _R.RIGHT_FOOT, (0, -1, 0), (1, 0, 0)),
+BALLS = (
+    Ball("left_hip", _R.HIPS, _R.LEFT_KNEE, _R.LEFT_FOOT, (0, -1, 0), (1, 0, 0)),
+    Ball("right_hip", _R.HIPS, _R.RIGHT_KNEE, _R.RIGHT_FOOT, (0, -1, 0), (1, 0, 0)),
     # Arms hang, reach forward and go up, but never point behind the back to the other side.
     # If an arm is held forward, its elbow usually bends inward and up.
-    _Ball("left_arm", _R.LEFT_SHOULDER, _R.LEFT_ELBOW, _R.LEFT_HAND, (_H, 0, _H), (-_Q, -_S, _Q)),
-    _Ball(
+    Ball("left_arm", _R.LEFT_SHOULDER, _R.LEFT_ELBOW, _R.LEFT_HAND, (_H, 0, _H), (-_Q, -_S, _Q)),
+    Ball(
         "right_arm", _R.RIGHT_SHOULDER, _R.RIGHT_ELBOW, _R.RIGHT_HAND, (-_H, 0, _H), (-_Q, _S, -_Q)
     ),
 )
@@ -68,13 +68,13 @@ ANGLES: tuple[str, ...] = (
     "trunk_roll",
     "head_pitch",
     "head_roll",
-    *(f"{ball.name}_{angle}" for ball in _BALLS for angle in ("flexion", "aside", "turn", "bend")),
+    *(f"{ball.name}_{angle}" for ball in BALLS for angle in ("flexion", "aside", "turn", "bend")),
 )
 """The names of the 20 angles (radians), in their order."""
 
 _UP, _LEFT = np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0])
-_RESTS = np.array([ball.rest for ball in _BALLS], dtype=np.float64)[:, None]
-_HINGES = np.array([ball.hinge for ball in _BALLS], dtype=np.float64)[:, None]
+RESTS = np.array([ball.rest for ball in BALLS], dtype=np.float64)[:, None]
+HINGES = np.array([ball.hinge for ball in BALLS], dtype=np.float64)[:, None]
 
 
 def joint_angles(positions: FloatArray, rate: float) -> FloatArray:
@@ -87,7 +87,7 @@ def joint_angles(positions: FloatArray, rate: float) -> FloatArray:
     trunk, heading = _trunk_frame(points), _heading_frame(points)
     spine = _in_frame(heading, _limb(points, (_R.HIPS,), (_R.NECK,)))
     head = _in_frame(trunk, _limb(points, (_R.NECK,), (_R.HEAD,)))
-    starts, middles, ends = zip(*((b.start, b.middle, b.end) for b in _BALLS), strict=True)
+    starts, middles, ends = zip(*((b.start, b.middle, b.end) for b in BALLS), strict=True)
     upper = _in_frame(trunk, _limb(points, starts, middles))
     lower = _in_frame(trunk, _limb(points, middles, ends))
     balls = _ball_angles(upper, lower, max(1, round(MAX_GAP * rate)))
@@ -119,19 +119,19 @@ def with_gaps_filled(values: FloatArray, seen: BoolArray, max_gap: int) -> Float
 
 
 def _ball_angles(upper: FloatArray, lower: FloatArray, max_gap: int) -> FloatArray:
-    """(4, n, 4) for each of _BALLS the flexion, aside and turn, and the bend of the next joint.
+    """(4, n, 4) for each of BALLS the flexion, aside and turn, and the bend of the next joint.
 
     upper, lower: (4, n, 3) the directions of both limbs in the trunk's frame.
     """
     axis = np.cross(upper, lower)
     sine, cosine = np.linalg.norm(axis, axis=-1), (upper * lower).sum(axis=-1)
     has_length = _has_direction(upper) & _has_direction(lower)
-    hinges = _rotated_with(_HINGES, _RESTS, upper)
+    hinges = rotated_with(HINGES, RESTS, upper)
     turns = np.arctan2((np.cross(hinges, axis) * upper).sum(axis=-1), (hinges * axis).sum(axis=-1))
     seen = has_length & (sine > np.sin(MIN_BEND))
     turns = np.stack([with_gaps_filled(*each, max_gap) for each in zip(turns, seen, strict=True)])
     bends = np.arctan2(sine, cosine) * has_length
-    swings = _swing(upper, _RESTS, _HINGES)
+    swings = _swing(upper, RESTS, HINGES)
     return np.concatenate([swings, turns[..., None], bends[..., None]], axis=-1)
 
 
@@ -149,7 +149,7 @@ def _swing(limbs: FloatArray, rest: FloatArray, about: FloatArray) -> FloatArray
     return np.stack([forward * scale, aside * scale], axis=-1)
 
 
-def _rotated_with(vectors: FloatArray, starts: FloatArray, ends: FloatArray) -> FloatArray:
+def rotated_with(vectors: FloatArray, starts: FloatArray, ends: FloatArray) -> FloatArray:
     """(k, n, 3) `vectors` (k, 1, 3) turned by the smallest rotations that bring `starts`
     (k, 1, 3) to `ends` (k, n, 3)."""
     axis = np.cross(starts, ends)
@@ -176,12 +176,12 @@ def _has_direction(limbs: FloatArray) -> BoolArray:
 
 def _trunk_frame(positions: FloatArray) -> FloatArray:
     """(n, 3, 3) rows left, up, forward of the trunk: up along the spine."""
-    return _frame(_limb(positions, (_R.HIPS,), (_R.NECK,))[0], _left(positions))
+    return frame_of(_limb(positions, (_R.HIPS,), (_R.NECK,))[0], _left(positions))
 
 
 def _heading_frame(positions: FloatArray) -> FloatArray:
     """(n, 3, 3) rows left, up, forward with up along the world's Y."""
-    return _frame(np.broadcast_to(_UP, (len(positions), 3)), _left(positions))
+    return frame_of(np.broadcast_to(_UP, (len(positions), 3)), _left(positions))
 
 
 def _left(positions: FloatArray) -> FloatArray:
@@ -191,7 +191,8 @@ def _left(positions: FloatArray) -> FloatArray:
     return np.asarray(np.where(_has_direction(shoulders)[:, None], shoulders, knees))
 
 
-def _frame(up: FloatArray, left: FloatArray) -> FloatArray:
+def frame_of(up: FloatArray, left: FloatArray) -> FloatArray:
+    """(n, 3, 3) rows left, up, forward: `up` (n, 3), and the part of `left` (n, 3) across it."""
     forward = _unit(np.cross(left, up), np.array([0.0, 0.0, 1.0]))
     return np.stack([_unit(np.cross(up, forward), _LEFT), up, forward], axis=1)
 

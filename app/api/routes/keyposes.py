@@ -23,9 +23,11 @@ Near each known beat (given, from a tempo or from a recording), the minimum of t
 keypose if it is below `t1`, or more than `t2` below the maxima on its two sides. The global energy
 is tried first, then the local energy. Without known beats, every rest of the body is tested in this
 way. `t1` and `t2` are shares of the median local maximum of each curve, so that they fit calm and
-wild motions. Without them, the thresholds are those learned from the annotated clips of this
-library, or else the defaults. A motion without rests has its keyposes where it is slowest relative
-to the waist, as in the steps of a walk.
+wild motions. Without them, the thresholds are those of the clip's segments and low-dimensional
+motions: learned from the annotated clips of this library, or else the defaults. When a fit learns
+other thresholds, all clips are analyzed again; each has its old keyposes until then, everywhere.
+A motion without rests has its keyposes where it is slowest relative to the waist, as in the steps
+of a walk.
 """
 _NAMED = """\
 Name the times of the clip's keyposes. Its segments, its low-dimensional motions and the thresholds

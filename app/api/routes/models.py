@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Query
+from fastapi import APIRouter, Depends, Path, Query, Request, Response
 
 from app.api.bodies import require_json
 from app.api.deps import Lib, reads, writes
 from app.api.guard.admission import changes, heavy, quick
-from app.api.openapi import ModelId, refusals
+from app.api.openapi import ModelId, SignatureModelId, refusals
+from app.api.routes.clip_views import OCTET_ANSWER
 from app.api.schemas.base import Limit
 from app.api.schemas.clips import Clip
 from app.api.schemas.jobs import Job, JobStarted
@@ -21,17 +22,22 @@ from app.api.schemas.models import (
     Model,
     ModelList,
     ModelPatch,
-    Signatures,
     UnfittedModel,
 )
-from app.errors import ModelNotFitted
-from app.services.recognition import confusion
-from app.services.recognition.signatures import signature_points
+from app.api.schemas.signatures import EigenmotionQuery, Signatures, SignaturesQuery
+from app.api.schemas.views import Motion
+from app.api.streams import as_json, as_octets, prefers_octets
+from app.errors import ModelNotFitted, NoSignatures
+from app.services.recognition import confusion, signatures
+from app.services.recognition.signatures import MAX_EIGENMOTIONS
 from app.services.training import models
 from app.services.training.active_errors import active_errors
 
 TaskOrPerson = Annotated[
     str, Query(min_length=1, max_length=300, openapi_examples={"a task": {"value": "TASK"}})
+]
+EigenmotionNumber = Annotated[
+    int, Path(ge=1, le=MAX_EIGENMOTIONS, openapi_examples={"the first": {"value": 1}})
 ]
 
 router = APIRouter(prefix="/v1/models", tags=["models"])
@@ -72,10 +78,43 @@ def list_confused_clips(
     return ConfusedClips(items=[Clip.model_validate(clip) for clip in found])
 
 
-@router.get("/signatures", dependencies=[reads, heavy], responses=refusals(ModelNotFitted))
-def list_signatures(lib: Lib) -> Signatures:
-    """The signature of each person in the multilinear model, as a point in two dimensions."""
-    return Signatures.of(*signature_points(lib))
+@router.get(
+    "/{model_id}/signatures",
+    dependencies=[reads, heavy],
+    responses=refusals(404, NoSignatures, ModelNotFitted),
+)
+def get_signatures(
+    lib: Lib, model_id: SignatureModelId, query: Annotated[SignaturesQuery, Query()]
+) -> Signatures:
+    """Persons, tasks and eigenmotions of a multilinear model as vectors, and weights of clips.
+
+    Models of the kinds `signatures` (joint angles, as in Vasilescu 2002) and `multilinear`
+    (positions) have them.
+    """
+    found = signatures.signatures(lib, model_id, query.as_filter(), query.limit, query.cursor)
+    return Signatures.of(found, query.eigenmotions)
+
+
+@router.get(
+    "/{model_id}/eigenmotions/{number}/motion",
+    response_model=Motion,
+    dependencies=[reads, heavy],
+    responses={200: OCTET_ANSWER, **refusals(404, NoSignatures, ModelNotFitted)},
+)
+def get_eigenmotion(
+    lib: Lib,
+    request: Request,
+    model_id: SignatureModelId,
+    number: EigenmotionNumber,
+    query: Annotated[EigenmotionQuery, Query()],
+) -> Response:
+    """The mean motion, moved along an eigenmotion, as the motion of a clip: to play it.
+
+    It has the 13 joints of figure 2 in Sun 2011. The body faces Z and stays in place, and its lower
+    foot is on the floor.
+    """
+    view = signatures.eigenmotion(lib, model_id, number, query.deviations, query.seconds)
+    return as_octets(view) if prefers_octets(request) else as_json(view)
 
 
 @router.post("/fit", status_code=202, dependencies=[writes, changes], responses=refusals())

@@ -62,7 +62,8 @@ class ThresholdSources(Outgoing):
     t1: Source
     t2: Source
     model_version: int | None = Field(
-        description="Version of the model with the learned thresholds, if they are used."
+        description="Version of the model with the learned thresholds, if they are used. null if a "
+        "newer one has learned others: then the clip waits for its new analysis."
     )
 
 

@@ -10,7 +10,6 @@ from pydantic import Field
 
 from app.api.schemas.base import Incoming, Outgoing
 from app.api.schemas.clips import Clip
-from app.numerics.arrays import FloatArray
 from app.services.library.fitted_models import FALSE_ACCEPT_RATE
 from app.services.recognition.confusion import Cell
 from app.services.training.active_errors import Errors
@@ -156,29 +155,3 @@ class ConfusedClips(Outgoing):
 
     items: list[Clip]
     next: str | None = None
-
-
-class Signature(Outgoing):
-    """The signature of a person, as a point."""
-
-    person: str
-    point: list[float] = Field(min_length=2, max_length=2)
-
-
-class Signatures(Outgoing):
-    """The signatures of all persons (Vasilescu 2002); `next` is always null."""
-
-    variance_kept: float = Field(
-        ge=0, le=1, description="Share of the signatures' variance that two dimensions show."
-    )
-    items: list[Signature]
-    next: str | None = None
-
-    @classmethod
-    def of(cls, persons: Sequence[str], points: FloatArray, kept: float) -> Signatures:
-        """The signatures as the API shows them."""
-        pairs = zip(persons, points.tolist(), strict=True)
-        return cls(
-            variance_kept=min(kept, 1.0),
-            items=[Signature(person=person, point=point) for person, point in pairs],
-        )

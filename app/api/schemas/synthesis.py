@@ -71,6 +71,15 @@ class SynthesizedClip(Outgoing):
     roles: dict[str, str] = Field(description="Joint name by joint role.")
 
 
+class QualityWarning(Outgoing):
+    """A reason not to trust a motion."""
+
+    code: str = Field(description="`jerky` or `feet_slide`.")
+    detail: str
+    value: float = Field(description="Of the motion: m/s³ of jerk, or m/s of foot skate.")
+    real: float = Field(description="Of real takes of the task, in the same unit.")
+
+
 class Quality(Outgoing):
     """How similar the motion is to real clips, and how similar such motions usually are."""
 
@@ -110,26 +119,39 @@ class Quality(Outgoing):
     expected_hit: float | None = Field(
         ge=0,
         le=1,
-        description="Measured when the model was fitted: combinations of person and task were left"
-        " out and synthesized. For this share of the motions, the nearest real clip was a take of"
-        " the same combination. Only motions of the same kind count: those that follow one take, or"
-        " those that do not. Null for `seen`.",
+        description="How likely a real take of the same person and task, if there were one, would "
+        "be the nearest real clip. Learned when the model was fitted, from combinations of person "
+        "and task that were left out and synthesized, by the number of given persons or tasks, by "
+        "`follows`, and by whether the nearest clip of others shows the task. Null for `seen`.",
     )
     expected_given: int | None = Field(
-        description="Number of persons (new_task) or tasks (new_person) from which these were made."
+        description="Number of persons (new_task) or tasks (new_person) that it is for: that of "
+        "this motion, or the largest number that was tried."
     )
-    expected_trials: int | None = Field(description="Number of combinations that were left out.")
+    expected_trials: int | None = Field(
+        description="Number of motions that were left out and synthesized to learn this."
+    )
     real_hit: float | None = Field(
         ge=0,
         le=1,
-        description="The same share for the real takes of these combinations, each "
-        "compared with all"
-        " others: an upper bound for `expected_hit`. Null if no combination has two takes.",
+        description="Share of real takes of such combinations whose nearest other clip is of the "
+        "same combination: an upper bound for `expected_hit`. Null if none has two takes.",
     )
     skate: float = Field(
         ge=0, description="Foot skate: mean horizontal speed of feet near the floor, m/s."
     )
     real_skate: float | None = Field(description="The same speed in real takes of the task.")
+    jerk: float = Field(
+        ge=0,
+        description="Root mean square, over frames and joints, of the third derivative of the "
+        "positions, m/s³.",
+    )
+    real_jerk: float | None = Field(description="The same in real takes of the task.")
+    warnings: list[QualityWarning] = Field(
+        validation_alias="doubts",
+        description="If the motion has more than twice the jerk or the foot skate of real takes of "
+        "the task, do not use it as it is.",
+    )
 
 
 class Synthesis(Outgoing):

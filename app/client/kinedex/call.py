@@ -45,9 +45,9 @@ class Call(Generic[Answer]):
     progress: Progress | None = None
 
 
-def path_of(template: str, **parts: str) -> str:
-    """The path of a call: the names in braces are replaced by quoted texts."""
-    return template.format(**{name: quote(part, safe="") for name, part in parts.items()})
+def path_of(template: str, **parts: str | int) -> str:
+    """The path of a call: the names in braces are replaced by quoted texts and by numbers."""
+    return template.format(**{name: quote(str(part), safe="") for name, part in parts.items()})
 
 
 def record(kind: type[Kind]) -> Callable[[httpx2.Response], Kind]:

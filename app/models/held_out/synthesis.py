@@ -6,12 +6,13 @@ is nearest to the synthesized motion has the same person and the same task.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from app.models.held_out.expected_hits import Outcome, fit_expected_hits, reliability
 from app.models.synthesis.model import Synthesis
 from app.models.synthesis.prediction import Predicted, predict
 from app.models.synthesis.solving import effects_only
@@ -35,8 +36,51 @@ class Trial:
     given: tuple[str, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """The result of a trial: the outcome, whether the person and the task of the nearest real clip
+    are right, and whether the baselines "effects" and "task_mean" hit."""
+
+    trial: Trial
+    outcome: Outcome
+    is_person: bool
+    is_task: bool
+    effects: bool
+    task_mean: bool
+
+
+def judge_trials(record: Synthesis, trials: int = TRIALS) -> dict[str, list[Judged]]:
+    """The results of at most `trials` trials for each number in GIVEN_COUNTS, by kind."""
+    return {
+        kind: [
+            _judged(record, kind, trial)
+            for given in GIVEN_COUNTS
+            for trial in draw_trials(record, kind, given, trials)
+        ]
+        for kind in (NEW_TASK, NEW_PERSON)
+    }
+
+
 def held_out_synthesis(record: Synthesis, trials: int = TRIALS) -> dict[str, list[dict[str, Any]]]:
-    """Rows for "new_task" and "new_person", one for each number in GIVEN_COUNTS.
+    """The rows (see `held_out_rows`) of `judge_trials`."""
+    return held_out_rows(record, judge_trials(record, trials))
+
+
+def expected_hits(judged: dict[str, list[Judged]]) -> dict[str, dict[str, Any]]:
+    """By kind that has trials, the curve of `ExpectedHits` and its "reliability", as JSON."""
+    found = {}
+    for kind, results in judged.items():
+        outcomes = [one.outcome for one in results]
+        if outcomes:
+            curve = fit_expected_hits(outcomes)
+            found[kind] = {**curve.to_json(), "reliability": reliability(outcomes)}
+    return found
+
+
+def held_out_rows(
+    record: Synthesis, judged: dict[str, list[Judged]]
+) -> dict[str, list[dict[str, Any]]]:
+    """Rows for "new_task" and "new_person", one for each number of given persons or tasks.
 
     "new_task": a task of a known person, from takes by `given` other persons. "new_person": a
     task of a new person, from takes of `given` of their tasks; all other persons are known.
@@ -49,8 +93,12 @@ def held_out_synthesis(record: Synthesis, trials: int = TRIALS) -> dict[str, lis
     "real" is an upper limit of what synthesis can reach.
     """
     return {
-        kind: [row for given in GIVEN_COUNTS if (row := _row(record, kind, given, trials))]
-        for kind in (NEW_TASK, NEW_PERSON)
+        kind: [
+            _row(record, given, of_given)
+            for given in GIVEN_COUNTS
+            if (of_given := [one for one in results if one.outcome.given == given])
+        ]
+        for kind, results in judged.items()
     }
 
 
@@ -93,20 +141,22 @@ def _others(record: Synthesis, person: str, task: str, kind: str) -> list[str]:
     return [name for name in record.tasks_of(person) if name != task]
 
 
-def _row(record: Synthesis, kind: str, given: int, trials: int) -> dict[str, Any] | None:
-    drawn = draw_trials(record, kind, given, trials)
-    if not drawn:
-        return None
-    judged = list(_judged(record, kind, drawn))
-    hits = np.array([marks for marks, _ in judged], dtype=np.float64)
+def _row(record: Synthesis, given: int, judged: Sequence[Judged]) -> dict[str, Any]:
+    marks = np.array(
+        [
+            (one.is_person, one.is_task, one.outcome.is_hit, one.effects, one.task_mean)
+            for one in judged
+        ],
+        dtype=np.float64,
+    )
     names = ("person", "task", "hit", "effects", "task_mean")
     shares = {
-        name: round(float(hit), 4) for name, hit in zip(names, hits.mean(axis=0), strict=True)
+        name: round(float(hit), 4) for name, hit in zip(names, marks.mean(axis=0), strict=True)
     }
-    followed = np.array([follows for _, follows in judged])
-    by_way = {"followed": _hit(hits[followed, 2]), "averaged": _hit(hits[~followed, 2])}
-    real = real_hit(record, drawn)
-    return {"given": given, "trials": len(drawn), **shares, **by_way, "real": real}
+    followed = np.array([one.outcome.follows for one in judged])
+    by_way = {"followed": _hit(marks[followed, 2]), "averaged": _hit(marks[~followed, 2])}
+    real = real_hit(record, [one.trial for one in judged])
+    return {"given": given, "trials": len(judged), **shares, **by_way, "real": real}
 
 
 def _hit(hits: FloatArray) -> dict[str, Any]:
@@ -126,23 +176,20 @@ def real_hit(record: Synthesis, drawn: list[Trial]) -> float | None:
     return round(float(np.mean(hits)), 4) if hits else None
 
 
-def _judged(
-    record: Synthesis, kind: str, drawn: list[Trial]
-) -> Iterator[tuple[tuple[bool, ...], bool]]:
-    """For each trial, whether each of five results is right, and whether it follows one person.
-
-    The results are the person, the task, both, and both by each of the two baselines.
-    """
-    for trial in drawn:
-        label = (trial.person, trial.task)
-        predicted = synthesized(record, kind, trial)
-        who, what = nearest_labels(record, predicted.shape)
-        baselines = (
-            nearest_labels(record, baseline(record, kind, trial, by)) == label
-            for by in (effects_only, task_mean)
-        )
-        marks = (who == trial.person, what == trial.task, (who, what) == label, *baselines)
-        yield marks, predicted.follows is not None
+def _judged(record: Synthesis, kind: str, trial: Trial) -> Judged:
+    label = (trial.person, trial.task)
+    predicted = synthesized(record, kind, trial)
+    distances = record.distances(predicted.shape)
+    found = record.labels_of(int(np.argmin(distances)))
+    distances[record.clips_of(*label)] = np.inf
+    shown = record.labels_of(int(np.argmin(distances)))[1]
+    baselines = [
+        nearest_labels(record, baseline(record, kind, trial, by)) == label
+        for by in (effects_only, task_mean)
+    ]
+    follows = predicted.follows is not None
+    outcome = Outcome(trial.person, len(trial.given), follows, shown == trial.task, found == label)
+    return Judged(trial, outcome, found[0] == trial.person, found[1] == trial.task, *baselines)
 
 
 Baseline = Callable[[FloatArray, FloatArray, FloatArray], FloatArray]

@@ -33,6 +33,12 @@ TIME_SMOOTHING = 2.0
 """Standard deviation, in moments (of 32), of the smoothing of the timing of a take. Without it, the
 motions of the bench have a quarter more jerk, and no more hits."""
 
+CYCLE_SMOOTHING = 0.7
+"""Standard deviation, in moments (of 32), of the smoothing of a cycle: a prediction adds up the
+noise of many takes. Without it, 16 cycles of dataset 1 have 2.1 times the jerk of real takes
+(median), with it 1.3 times, with as many hits and as little foot skate. 1.0 gives 0.9 times, and
+one hit less."""
+
 MIN_SECONDS = 0.2
 
 
@@ -77,7 +83,7 @@ def _repeated(shape: FloatArray, split: Shape, seconds: float | None) -> tuple[F
     frames = max(round(split.seconds * ANALYSIS_RATE), 4)
     requested = USUAL_SECONDS if seconds is None else seconds
     cycles = max(round(requested * ANALYSIS_RATE / frames), 1)
-    moments = _moments(shape)
+    moments = scipy.ndimage.gaussian_filter1d(_moments(shape), CYCLE_SMOOTHING, axis=0, mode="wrap")
     # moments of the neighboring cycles, so that the curve is smooth across the end
     padded = np.concatenate([moments[-2:], moments, moments[:3]])
     once = sample_at(padded, 2 + SAMPLES * np.arange(frames) / frames)

@@ -6,16 +6,14 @@ the job and the imports that wait: a clip is never ready in part.
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, astuple
 
 from app.analysis.analyze import ANALYSIS_VERSION, Analysis
-from app.analysis.energy.energy import EnergyMethod
 from app.errors import (
     AnalysisCrashed,
     AnalysisInterrupted,
     AnalysisTimedOut,
     BadContent,
-    ModelNotFitted,
     NotFound,
     StorageError,
     StoredFileMissing,
@@ -27,6 +25,7 @@ from app.motion.skeleton.recording import Caution
 from app.services.children.child import ChildDied
 from app.services.library.analysis_pool import AnalysisRequest
 from app.services.library.keypose_frames import annotated_keypose_arrays
+from app.services.library.keypose_thresholds import library_thresholds
 from app.services.library.library import Library
 from app.services.library.stored_motion import motion_arrays
 from app.store import stage_times
@@ -53,7 +52,7 @@ def analysis_request(lib: Library, clip: ClipRecord) -> AnalysisRequest:
         metres_per_unit=hints.metres_per_unit,
         up_axis=hints.up_axis,
         roles=hints.roles,
-        thresholds=_thresholds(lib),
+        thresholds=astuple(library_thresholds(lib)),
         audio_path=None if audio is None else _place(lib, audio, "recording"),
         beats=hints.beats,
         tempo=hints.tempo,
@@ -67,14 +66,6 @@ def _place(lib: Library, sha256: str, what: str) -> str:
     except NotFound as missing:
         message = f"The stored {what} of this clip is missing ({sha256})"
         raise StoredFileMissing(message) from missing
-
-
-def _thresholds(lib: Library) -> tuple[float, float] | None:
-    try:
-        learned = lib.models.keyposes(lib.store).model.by_method.get(EnergyMethod.RMS)
-    except ModelNotFitted:
-        return None
-    return None if learned is None else (learned.t1, learned.t2)
 
 
 def finish(tx: Tx, claimed: ClaimedJob, clip: ClipRecord, analysis: Analysis) -> None:

@@ -13,6 +13,11 @@ from collections.abc import Sequence
 
 from app.analysis.analyze import ANALYSIS_VERSION
 from app.services.clips.catalogue import BULK_PRIORITY, enqueue_ingest
+from app.services.library.keypose_thresholds import (
+    KEYPOSE_THRESHOLDS,
+    library_thresholds,
+    thresholds_array,
+)
 from app.services.library.library import Library
 from app.store.clips import listing as clip_listing
 from app.store.clips import repository as clips
@@ -27,11 +32,13 @@ def requeue_outdated(lib: Library) -> int:
     """Queue the ready clips with an outdated analysis; returns how many.
 
     An analysis is outdated if it is of another version, or older than the last change of the hints
-    or the recording.
+    or the recording, or if its keyposes have other thresholds than those of the library.
     """
+    expected = thresholds_array(library_thresholds(lib))
     with lib.store.read() as tx:
         ids = clip_listing.list_outdated_ids(tx, ANALYSIS_VERSION)
-    return _requeue(lib, ids)
+        others = clip_listing.list_ids_with_other_array(tx, KEYPOSE_THRESHOLDS, expected)
+    return _requeue(lib, sorted({*ids, *others}))
 
 
 def requeue_ready(lib: Library) -> int:

@@ -62,6 +62,9 @@ FALSE_ACCEPT_RATE = "false_accept_rate"
 KINDS_WITH_UNKNOWN = (ModelKind.RECOGNIZER, ModelKind.PERERA)
 """Recognizers that can answer "unknown": they have the setting FALSE_ACCEPT_RATE."""
 
+KINDS_WITH_SIGNATURES = (ModelKind.MULTILINEAR, ModelKind.SIGNATURES)
+"""Models that have signatures of persons: `FittedModels.multilinear` and `signatures`."""
+
 _WITHOUT_PERSONS = frozenset({ModelKind.WORDS, ModelKind.METRIC_TASK, ModelKind.KEYPOSES})
 
 INPUT_SHAPES = "shapes"

@@ -19,6 +19,7 @@ from app.analysis.segments.keypose_arrays import frames_at, keypose_arrays
 from app.errors import NotFound
 from app.motion.frame.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray, IntArray
+from app.services.library.keypose_thresholds import stored_thresholds
 from app.services.library.library import Library
 from app.store.clips import arrays, keypose_annotations
 from app.store.clips.record import ClipRecord
@@ -38,7 +39,9 @@ def keypose_frames(lib: Library, clip_id: str, track: BodyTrack) -> IntArray:
         with lib.store.read() as tx:
             frames = arrays.get_one(tx, clip_id, KEYPOSE_FRAMES)
     except NotFound:
-        frames = find_keyposes(track, beats=stored_beats(lib, clip_id)).frames
+        used = stored_thresholds(lib, clip_id)
+        beats = stored_beats(lib, clip_id)
+        frames = find_keyposes(track, t1=used.t1, t2=used.t2, beats=beats).frames
     # A new analysis may have made the motion shorter than the stored frames.
     return np.asarray(frames[(frames >= 0) & (frames < track.frames)], dtype=np.int64)
 

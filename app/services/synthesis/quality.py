@@ -7,20 +7,18 @@ from typing import Any
 
 import numpy as np
 
+from app.models.held_out.expected_hits import ExpectedHits
 from app.models.synthesis.model import Synthesis
-from app.motion.frame.foot_contact import FEET, skating
 from app.motion.motion import Motion
 from app.numerics.arrays import FloatArray
 from app.services.library.fitted_models import Fitted
 from app.services.library.library import Library
-from app.services.library.stored_motion import load_motion
+from app.services.synthesis.movement import Doubt, doubts, movement_of, real_movement
 from app.services.synthesis.plan import Plan, SynthesisKind
+from app.services.training.synthesis_fit import EXPECTED_HITS
 from app.store import models
 from app.store.clips import repository as clips
-from app.store.clips.record import ClipRecord, ClipState
-
-MAX_TAKES = 5
-"""Largest number of real takes whose foot skate is measured."""
+from app.store.clips.record import ClipRecord
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,14 +29,13 @@ class Quality:
     clip; None if it was removed; nearest_person, nearest_task: its labels; distance: to it;
     person_is_right, task_is_right: whether its labels are those of the query.
     follows, agreement: see Plan.
-    expected_hit: share of the cells that were left out of the fit, and synthesized from as many
-    persons (or tasks), whose nearest real clip had both labels right; it counts those that
-    followed one take if this motion does, else the others; expected_given, expected_trials: the
-    numbers of persons (or tasks) and of cells of that share; real_hit: the same share for the
-    cells' real takes, an upper limit. All are None for a recorded cell, or if no cell could be
-    left out.
-    skate, real_skate: mean horizontal speed of feet that are low, m/s, of this motion and of
-    real takes of the task.
+    expected_hit: the expected chance that the nearest real clip of the same person at the task, if
+    it existed, were the nearest of all (see `ExpectedHits`); expected_given: the number of persons
+    (or tasks) that it is for, at most the largest that was tried; expected_trials: the number of
+    held-out motions that it was learned from; real_hit: the hits of the real takes of such cells,
+    an upper limit. All are None for a recorded cell, or if no cell could be left out.
+    skate, jerk: see `Movement`; real_skate, real_jerk: the means of real takes of the task;
+    doubts: if the motion is much worse than those.
     """
 
     kind: SynthesisKind
@@ -58,6 +55,9 @@ class Quality:
     real_hit: float | None
     skate: float
     real_skate: float | None
+    jerk: float
+    real_jerk: float | None
+    doubts: tuple[Doubt, ...]
 
 
 def judge(
@@ -71,8 +71,11 @@ def judge(
     with lib.store.read() as tx:
         record = models.get(tx, fitted.id)
         nearest = clips.get_many(tx, [model.ids[first]]).get(model.ids[first])
-        takes = list(clips.get_many(tx, list(plan.takes)).values())
-    expected = expected_of(record.meta.get("figures", {}), plan)
+    expected = expected_of(
+        record.meta.get("figures", {}), plan, shows_task=_shows_task(model, plan, distances)
+    )
+    own = movement_of(motion)
+    real = real_movement(lib, [model.ids[i] for i in model.clips_of(task=plan.task)])
     return Quality(
         kind=plan.kind,
         given_persons=plan.given_persons,
@@ -85,37 +88,49 @@ def judge(
         distance=float(distances[first]),
         person_is_right=None if plan.person is None else person == plan.person,
         task_is_right=task == plan.task,
-        expected_hit=expected.get("hit"),
-        expected_given=expected.get("given"),
-        expected_trials=expected.get("trials"),
-        real_hit=expected.get("real"),
-        skate=_skate(motion),
-        real_skate=_real_skate(lib, takes),
+        expected_hit=None if expected is None else expected.hit,
+        expected_given=None if expected is None else expected.given,
+        expected_trials=None if expected is None else expected.trials,
+        real_hit=None if expected is None else expected.real,
+        skate=own.skate,
+        real_skate=None if real is None else real.skate,
+        jerk=own.jerk,
+        real_jerk=None if real is None else real.jerk,
+        doubts=doubts(own, real, plan.task),
     )
 
 
-def expected_of(figures: dict[str, Any], plan: Plan) -> dict[str, Any]:
-    """The held-out hits of motions like this one.
+@dataclass(frozen=True, slots=True)
+class Expected:
+    """The expected hit of a motion; see `Quality`."""
 
-    They are of motions that followed one take if the plan does, else of the others. The row is
-    the one with as many given persons (or tasks), or else the nearest smaller, or else the
-    nearest larger number that has such motions. Without any, the hits are of all motions.
+    hit: float
+    given: int
+    trials: int
+    real: float | None
+
+
+def expected_of(figures: dict[str, Any], plan: Plan, *, shows_task: bool) -> Expected | None:
+    """What the held-out figures say about a motion like this one; None for a recorded cell.
+
+    shows_task: whether the real clip nearest to the motion, without those of its cell, shows the
+    task. None too if no cell could be held out.
     """
-    rows = figures.get("held_out", {}).get(plan.kind.value, [])
-    group = "averaged" if plan.follows is None else "followed"
-    group_rows = [{**row, **row[group]} for row in rows if row[group]["trials"]]
+    curve = figures.get(EXPECTED_HITS, {}).get(plan.kind.value)
+    if curve is None:
+        return None
     is_new_task = plan.kind is SynthesisKind.NEW_TASK
-    given = len(plan.given_persons if is_new_task else plan.given_tasks)
-    rows = group_rows or rows
+    hits = ExpectedHits.from_json(curve)
+    given = min(len(plan.given_persons if is_new_task else plan.given_tasks), hits.most)
+    hit = hits.of(given, follows=plan.follows is not None, shows_task=shows_task)
+    rows = figures["held_out"][plan.kind.value]
     fewer = [row for row in rows if row["given"] <= given]
-    return dict(fewer[-1]) if fewer else dict(rows[0]) if rows else {}
+    return Expected(hit, given, hits.trials, (fewer[-1] if fewer else rows[0])["real"])
 
 
-def _skate(motion: Motion) -> float:
-    return skating(motion.role_positions()[:, FEET].astype(np.float64), motion.frame_rate)
-
-
-def _real_skate(lib: Library, takes: list[ClipRecord]) -> float | None:
-    ready = [clip for clip in takes if clip.state is ClipState.READY][:MAX_TAKES]
-    found = [_skate(load_motion(lib, clip)) for clip in ready]
-    return float(np.mean(found)) if found else None
+def _shows_task(model: Synthesis, plan: Plan, distances: FloatArray) -> bool:
+    """Whether the real clip with the least distance, without those of the cell, shows the task."""
+    others = np.array(distances)
+    if plan.person is not None:
+        others[model.clips_of(plan.person, plan.task)] = np.inf
+    return model.labels_of(int(np.argmin(others)))[1] == plan.task

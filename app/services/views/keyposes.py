@@ -11,12 +11,12 @@ import numpy as np
 
 from app.analysis.energy.energy import EnergyMethod, Weights
 from app.analysis.keyposes.keyposes import Keyposes, find_keyposes
-from app.errors import ModelNotFitted
 from app.models.keyposes.thresholds import USUAL, Thresholds
 from app.motion.frame.body_frame import body_track
 from app.numerics.arrays import FloatArray
 from app.services import fields
 from app.services.library.keypose_frames import store_keypose_arrays, stored_beats
+from app.services.library.keypose_thresholds import learned_thresholds, stored_thresholds
 from app.services.library.library import Library
 from app.services.library.ready_clips import ready_clip
 from app.services.library.stored_motion import load_motion
@@ -43,7 +43,7 @@ class ThresholdSource(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class UsedThresholds:
-    """T1 and T2, the source of each, and the version of the model, if one was used."""
+    """T1 and T2, the source of each, and the version of the current model, if it has them."""
 
     values: Thresholds
     t1_source: ThresholdSource
@@ -77,14 +77,14 @@ def view(
 ) -> KeyposesView:
     """A clip's keyposes by the thresholds T1 and T2 (Perera 2009).
 
-    method: one of METHODS; weights: one of WEIGHTS; t1, t2: None is the learned threshold, or the
-    default one if none was learned. Raises BadField, ClipNotFound, ClipNotReady.
+    method: one of METHODS; weights: one of WEIGHTS; t1, t2: None is the threshold of the stored
+    keyposes, which segments have too. Raises BadField, ClipNotFound, ClipNotReady.
     """
     for name, value, allowed in (("method", method, METHODS), ("weights", weights, WEIGHTS)):
         if value not in allowed:
             raise fields.bad_field(name, f"must be one of {', '.join(allowed)}")
-    used = thresholds(lib, method, t1, t2)
     clip = ready_clip(lib, clip_id)
+    used = thresholds(lib, clip_id, method, t1, t2)
     track = body_track(load_motion(lib, clip))
     found = find_keyposes(
         track,
@@ -101,35 +101,31 @@ def view(
 
 def thresholds(
     lib: Library,
+    clip_id: str,
     method: str = EnergyMethod.RMS,
     t1: float | None = None,
     t2: float | None = None,
 ) -> UsedThresholds:
-    """The thresholds for an energy method.
+    """The thresholds for a ready clip and an energy method.
 
-    Each is the given one, else the learned one, else the default one. Raises BadField.
+    Each is the given one, or else that of the clip's stored keyposes. Those are found by the method
+    "rms"; another method has its learned threshold, or else the default one. Raises BadField.
     """
     for name, value in (("t1", t1), ("t2", t2)):
         if value is not None and not (math.isfinite(value) and value > 0):
             raise fields.bad_field(name, "must be a number above 0")
-    learned, version = _learned(lib, method)
-    fallback_source = ThresholdSource.DEFAULT if learned is None else ThresholdSource.LEARNED
-    fallback = learned or USUAL
+    learned, version = learned_thresholds(lib, method)
+    is_stored = method == EnergyMethod.RMS
+    fallback = stored_thresholds(lib, clip_id) if is_stored else learned or USUAL
+    is_default = fallback == USUAL and learned != USUAL
+    source = ThresholdSource.DEFAULT if is_default else ThresholdSource.LEARNED
+    is_of_model = fallback == learned and (t1 is None or t2 is None)
     return UsedThresholds(
         values=Thresholds(t1 or fallback.t1, t2 or fallback.t2),
-        t1_source=fallback_source if t1 is None else ThresholdSource.GIVEN,
-        t2_source=fallback_source if t2 is None else ThresholdSource.GIVEN,
-        model_version=version if t1 is None or t2 is None else None,
+        t1_source=source if t1 is None else ThresholdSource.GIVEN,
+        t2_source=source if t2 is None else ThresholdSource.GIVEN,
+        model_version=version if is_of_model else None,
     )
-
-
-def _learned(lib: Library, method: str) -> tuple[Thresholds | None, int | None]:
-    try:
-        fitted = lib.models.keyposes(lib.store)
-    except ModelNotFitted:
-        return None, None
-    found = fitted.model.by_method.get(method)
-    return found, None if found is None else fitted.version
 
 
 def annotate_keyposes(lib: Library, clip_id: str, times: Sequence[float]) -> tuple[float, ...]:
@@ -165,5 +161,5 @@ def _found_times(lib: Library, clip: ClipRecord) -> FloatArray | None:
     if clip.state is not ClipState.READY:
         return None
     track = body_track(load_motion(lib, clip))
-    used = thresholds(lib).values
+    used = stored_thresholds(lib, clip.id)
     return find_keyposes(track, t1=used.t1, t2=used.t2, beats=stored_beats(lib, clip.id)).times

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from datetime import datetime
+from typing import Any
 
-from sqlalchemy import ColumnElement, Select, func, or_, select
+from numpy.typing import NDArray
+from sqlalchemy import ColumnElement, Select, exists, func, or_, select
 
 from app.errors import BadField
 from app.kinedex_error import Place
@@ -13,9 +15,10 @@ from app.store.clips import repository as clip_repository
 from app.store.clips.filter import ClipFilter, condition, id_sets
 from app.store.clips.measures import MEASURES
 from app.store.clips.record import REANALYSIS_OPEN, ClipRecord, ClipState, Reanalysis
+from app.store.database.blobs import to_blob
 from app.store.database.engine import Tx
 from app.store.database.paging import Page, Position, Value, after, read_cursor, write_cursor
-from app.store.database.tables import clip_metadata, clips
+from app.store.database.tables import clip_arrays, clip_metadata, clips
 from app.store.database.totals import Total, total_of
 
 DEFAULT_SORT = "-created_at"
@@ -111,9 +114,27 @@ def list_outdated_ids(tx: Tx, version: int) -> tuple[str, ...]:
     input of the analysis.
     """
     is_other = func.coalesce(clips.c.analysis_version, -1) != version
+    return _ready_ids(tx, or_(is_other, clips.c.is_changed))
+
+
+def list_ids_with_other_array(tx: Tx, name: str, expected: NDArray[Any]) -> tuple[str, ...]:
+    """The ids of ready clips that do not have the array `expected` under this name.
+
+    Clips that wait for another analysis are left out.
+    """
+    same = exists().where(
+        clip_arrays.c.clip_id == clips.c.id,
+        clip_arrays.c.name == name,
+        clip_arrays.c.data == to_blob(expected)["data"],
+    )
+    return _ready_ids(tx, ~same)
+
+
+def _ready_ids(tx: Tx, passes: ColumnElement[bool]) -> tuple[str, ...]:
+    """The ids of the ready clips that pass and do not wait for another analysis, sorted."""
     query = select(clips.c.id).where(
         clips.c.state == ClipState.READY.value,
-        or_(is_other, clips.c.is_changed),
+        passes,
         func.coalesce(clips.c.reanalysis, "").not_in(REANALYSIS_OPEN),
     )
     return tuple(tx.execute(query.order_by(clips.c.id)).scalars())

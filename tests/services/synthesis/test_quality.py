@@ -10,59 +10,48 @@ import pytest
 from app.services.synthesis.plan import Plan, SynthesisKind
 from app.services.synthesis.quality import expected_of
 
-
-def row(given: int, followed: tuple[int, float | None], averaged: tuple[int, float | None]) -> Any:
-    of_all = sum(trials * (hit or 0.0) for trials, hit in (followed, averaged))
-    trials = followed[0] + averaged[0]
-    parts = {
-        name: {"trials": part[0], "hit": part[1]}
-        for name, part in (("followed", followed), ("averaged", averaged))
-    }
-    return {"given": given, "trials": trials, "hit": of_all / trials, "real": 0.9} | parts
-
-
 FIGURES: dict[str, Any] = {
     "held_out": {
-        "new_task": [
-            row(1, (0, None), (10, 0.5)),
-            row(2, (4, 0.25), (6, 0.7)),
-            row(5, (2, 0.0), (8, 0.8)),
-            row(8, (0, None), (3, 1.0)),
-        ],
-        "new_person": [row(1, (0, None), (5, 0.2)), row(3, (0, None), (5, 0.6))],
-    }
+        "new_task": [{"given": 1, "real": 0.9}, {"given": 3, "real": 0.8}],
+        "new_person": [{"given": 2, "real": None}],
+    },
+    "expected_hits": {
+        "new_task": {"weights": [-1.0, 1.0, -2.0, 0.5], "most": 5, "trials": 90},
+        "new_person": {"weights": [0.0, 0.0, 0.0, 0.0], "most": 2, "trials": 7},
+    },
 }
 
 
-def plan(kind: SynthesisKind, given: int, follows: str | None) -> Plan:
+def plan(kind: SynthesisKind, given: int, follows: str | None = None) -> Plan:
     names = tuple(f"n{i}" for i in range(given))
     return Plan(kind, "x", "t", np.zeros(1378), (), names, names, (), follows, 0.5)
 
 
 @pytest.mark.parametrize(
-    ("given", "follows", "hit", "of", "trials"),
+    ("given", "follows", "shows_task", "logit", "of", "real"),
     [
-        (1, None, 0.5, 1, 10),
-        (4, None, 0.7, 2, 6),
-        (30, None, 1.0, 8, 3),
-        (30, "n0", 0.0, 5, 2),  # the row of 8 has none that followed
-        (3, "n0", 0.25, 2, 4),
-        (1, "n0", 0.25, 2, 4),  # nor has that of 1: of more is the nearest that is known
+        (1, None, False, -1.0, 1, 0.9),
+        (2, None, True, -0.5 + np.log(2), 2, 0.9),
+        (3, "n0", True, -2.5 + np.log(3), 3, 0.8),
+        (30, None, False, -1.0 + np.log(5), 5, 0.8),  # more than were tried
     ],
 )
-def test_the_expected_hit_is_that_of_motions_of_the_same_kind(
-    given: int, follows: str | None, hit: float, of: int, trials: int
+def test_the_expected_hit_depends_on_what_is_known(
+    given: int, follows: str | None, shows_task: bool, logit: float, of: int, real: float
 ) -> None:
-    expected = expected_of(FIGURES, plan(SynthesisKind.NEW_TASK, given, follows))
-    names = ("hit", "given", "trials", "real")
-    assert [expected[name] for name in names] == [hit, of, trials, 0.9]
+    asked = plan(SynthesisKind.NEW_TASK, given, follows)
+    found = expected_of(FIGURES, asked, shows_task=shows_task)
+    assert found is not None
+    assert found.hit == pytest.approx(1 / (1 + np.exp(-logit)))
+    assert (found.given, found.trials, found.real) == (of, 90, real)
 
 
-def test_without_motions_of_the_same_kind_the_expected_hit_is_that_of_all() -> None:
-    expected = expected_of(FIGURES, plan(SynthesisKind.NEW_PERSON, 3, "n0"))
-    assert (expected["hit"], expected["given"], expected["trials"]) == (0.6, 3, 5)
+def test_fewer_than_were_tried_have_the_upper_limit_of_the_fewest() -> None:
+    found = expected_of(FIGURES, plan(SynthesisKind.NEW_PERSON, 1), shows_task=True)
+    assert found is not None
+    assert (found.hit, found.given, found.real) == (0.5, 1, None)
 
 
 def test_a_recorded_task_has_no_expected_hit() -> None:
-    assert expected_of(FIGURES, plan(SynthesisKind.SEEN, 1, None)) == {}
-    assert expected_of({}, plan(SynthesisKind.NEW_TASK, 1, None)) == {}
+    assert expected_of(FIGURES, plan(SynthesisKind.SEEN, 1), shows_task=True) is None
+    assert expected_of({}, plan(SynthesisKind.NEW_TASK, 1), shows_task=True) is None

@@ -50,8 +50,6 @@ def ids(danced: Library) -> Iterator[list[str]]:
     yield found
     for clip_id in found:
         annotate_keyposes(danced, clip_id, ())
-    with danced.store.write() as tx:
-        models.remove(tx, ["keyposes"])
 
 
 def stored(lib: Library, clip_id: str, name: str) -> np.ndarray:
@@ -129,14 +127,28 @@ def test_a_clip_may_be_annotated_before_it_is_analyzed(
         annotate_keyposes(lib, "clip_none", [1.0])
 
 
-def test_thresholds_have_a_source_given_learned_or_default(danced: Library, ids: list[str]) -> None:
-    usual = view(danced, ids[0]).thresholds
-    assert (usual.t1_source, usual.t2_source) == (ThresholdSource.DEFAULT,) * 2
-    arrays, meta = KeyposeThresholds({"rms": Thresholds(0.4, 1.5)}).to_arrays()
-    with danced.store.write() as tx:
+def learn(lib: Library, *pair: float) -> None:
+    """Store thresholds as if a fit had learned them."""
+    arrays, meta = KeyposeThresholds({"rms": Thresholds(*pair)}).to_arrays()
+    with lib.store.write() as tx:
         models.save(
             tx, "keyposes", meta={"model": meta}, arrays=arrays, library_version=1, library_size=1
         )
+
+
+def forget_learned(lib: Library) -> None:
+    with lib.store.write() as tx:
+        models.remove(tx, ["keyposes"])
+    work(lib.settings)
+
+
+def test_thresholds_have_a_source_given_learned_or_default(danced: Library, ids: list[str]) -> None:
+    usual = view(danced, ids[0]).thresholds
+    assert (usual.t1_source, usual.t2_source) == (ThresholdSource.DEFAULT,) * 2
+    learn(danced, 0.4, 1.5)
+    waiting = view(danced, ids[0]).thresholds
+    assert (waiting.t1_source, waiting.model_version) == (ThresholdSource.DEFAULT, None)
+    work(danced.settings)
     learned = view(danced, ids[0], t2=0.9)
     assert learned.thresholds.values == Thresholds(0.4, 0.9)
     assert learned.thresholds.t1_source is ThresholdSource.LEARNED
@@ -145,22 +157,21 @@ def test_thresholds_have_a_source_given_learned_or_default(danced: Library, ids:
     assert (learned.found.t1, learned.found.t2) == (0.4, 0.9)
     assert view(danced, ids[0], "printed").thresholds.t1_source is ThresholdSource.DEFAULT
     assert view(danced, ids[0], t1=1.0, t2=1.0).thresholds.model_version is None
+    learn(danced, 0.3, 1.5)
+    older = view(danced, ids[0]).thresholds
+    assert older.values == Thresholds(0.4, 1.5)
+    assert (older.t1_source, older.model_version) == (ThresholdSource.LEARNED, None)
+    forget_learned(danced)
 
 
-def test_new_analyses_use_learned_thresholds(danced: Library, ids: list[str]) -> None:
+def test_analyses_use_learned_thresholds_and_default_ones_after_them(
+    danced: Library, ids: list[str]
+) -> None:
     before = stored(danced, ids[1], "keypose_frames")
-    arrays, meta = KeyposeThresholds({"rms": Thresholds(1e-6, 99.0)}).to_arrays()
-    with danced.store.write() as tx:
-        models.save(
-            tx, "keyposes", meta={"model": meta}, arrays=arrays, library_version=1, library_size=1
-        )
-    clips.update_clip(danced, ids[1], {"frame_rate": 50.0})
+    learn(danced, 1e-6, 99.0)
     work(danced.settings)
     assert len(stored(danced, ids[1], "keypose_frames")) == 0
-    with danced.store.write() as tx:
-        models.remove(tx, ["keyposes"])
-    clips.update_clip(danced, ids[1], {"frame_rate": None})
-    work(danced.settings)
+    forget_learned(danced)
     np.testing.assert_array_equal(stored(danced, ids[1], "keypose_frames"), before)
 
 
@@ -216,4 +227,4 @@ def test_a_manifest_names_keyposes(lib: Library, tmp_path: Path, dances: list[De
 
 
 def test_keyposes_need_no_fitted_model(danced: Library, ids: list[str]) -> None:
-    assert keyposes.thresholds(danced).model_version is None
+    assert keyposes.thresholds(danced, ids[0]).model_version is None

@@ -27,9 +27,11 @@ def get_keyposes(
     a keypose if it is below `t1`, or more than `t2` below the maxima on its two sides. The
     global energy is tried first, then the local energy. Without known beats, every rest of the
     body is tested in this way. `t1` and `t2` are shares of the median local maximum of each
-    curve, so that they fit calm and wild motions. Without them, the thresholds are those learned
-    from the annotated clips of this library, or else the defaults. A motion without rests has
-    its keyposes where it is slowest relative to the waist, as in the steps of a walk.
+    curve, so that they fit calm and wild motions. Without them, the thresholds are those of the
+    clip's segments and low-dimensional motions: learned from the annotated clips of this
+    library, or else the defaults. When a fit learns other thresholds, all clips are analyzed
+    again; each has its old keyposes until then, everywhere. A motion without rests has its
+    keyposes where it is slowest relative to the waist, as in the steps of a walk.
 
     method: RMS of joint speeds, or equations 1 and 2 as printed. Default: rms.
     weights: Weights of the joints: all equal, or the mass that moves with each (fig. 6).

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
 
-from kinedex.call import Call, path_of, record
+from kinedex.call import OCTETS, Call, path_of, record
+from kinedex.positions import Positions, positions
 from kinedex.sent import corrections, given
 
 if TYPE_CHECKING:
     from kinedex.types.jobs import JobStarted
-    from kinedex.types.models import ConfusedClips, Confusion, Model, ModelList, Signatures
+    from kinedex.types.models import ConfusedClips, Confusion, Model, ModelList
+    from kinedex.types.signatures import Signatures
+    from kinedex.types.views import Motion
 
 
 def list_models() -> Call[ModelList]:
@@ -79,11 +83,88 @@ def list_confused_clips(
     )
 
 
-def list_signatures() -> Call[Signatures]:
-    """The signature of each person in the multilinear model, as a point in two dimensions."""
-    from kinedex.types.models import Signatures
+def get_signatures(
+    model_id: str,
+    *,
+    eigenmotions: int | None = None,
+    person: Sequence[str] | None = None,
+    task: Sequence[str] | None = None,
+    limit: int | None = None,
+    cursor: str | None = None,
+) -> Call[Signatures]:
+    """Persons, tasks and eigenmotions of a multilinear model as vectors, and weights of clips.
 
-    return Call("list_signatures", "GET", "/v1/models/signatures", record(Signatures))
+    Models of the kinds `signatures` (joint angles, as in Vasilescu 2002) and `multilinear`
+    (positions) have them.
+
+    eigenmotions: Number of eigenmotions, and of weights of each clip. Default: 8.
+    person: Only clips of these persons. Default: [].
+    task: Only clips with these tasks. Default: [].
+    limit: Maximum number of items in one answer. Default: 100.
+    """
+    from kinedex.types.signatures import Signatures
+
+    return Call(
+        "get_signatures",
+        "GET",
+        path_of("/v1/models/{model_id}/signatures", model_id=model_id),
+        record(Signatures),
+        query=given(
+            eigenmotions=eigenmotions, person=person, task=task, limit=limit, cursor=cursor
+        ),
+    )
+
+
+def get_eigenmotion(
+    model_id: str, number: int, *, deviations: float | None = None, seconds: float | None = None
+) -> Call[Motion]:
+    """The mean motion, moved along an eigenmotion, as the motion of a clip: to play it.
+
+    It has the 13 joints of figure 2 in Sun 2011. The body faces Z and stays in place, and its
+    lower foot is on the floor.
+
+    deviations: How far from the mean motion, in standard deviations of the weight over all
+        persons and tasks. 0 is the mean motion. Default: 2.0.
+    seconds: Duration, seconds. It can be chosen, since an eigenmotion has no duration. Default:
+        2.0.
+    """
+    from kinedex.types.views import Motion
+
+    return Call(
+        "get_eigenmotion",
+        "GET",
+        path_of(
+            "/v1/models/{model_id}/eigenmotions/{number}/motion", model_id=model_id, number=number
+        ),
+        record(Motion),
+        query=given(deviations=deviations, seconds=seconds),
+    )
+
+
+def get_eigenmotion_array(
+    model_id: str, number: int, *, deviations: float | None = None, seconds: float | None = None
+) -> Call[Positions]:
+    """The mean motion, moved along an eigenmotion, as the motion of a clip: to play it. The answer
+    is an array.
+
+    It has the 13 joints of figure 2 in Sun 2011. The body faces Z and stays in place, and its
+    lower foot is on the floor.
+
+    deviations: How far from the mean motion, in standard deviations of the weight over all
+        persons and tasks. 0 is the mean motion. Default: 2.0.
+    seconds: Duration, seconds. It can be chosen, since an eigenmotion has no duration. Default:
+        2.0.
+    """
+    return Call(
+        "get_eigenmotion",
+        "GET",
+        path_of(
+            "/v1/models/{model_id}/eigenmotions/{number}/motion", model_id=model_id, number=number
+        ),
+        positions,
+        query=given(deviations=deviations, seconds=seconds),
+        accept=OCTETS,
+    )
 
 
 def request_fit() -> Call[JobStarted]:

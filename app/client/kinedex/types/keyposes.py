@@ -31,7 +31,8 @@ class EnergyNoise(Record):
 class ThresholdSources(Record):
     """The sources of T1 and T2.
 
-    model_version: Version of the model with the learned thresholds, if they are used.
+    model_version: Version of the model with the learned thresholds, if they are used. null if a
+    newer one has learned others: then the clip waits for its new analysis.
     """
 
     t1: Literal["given", "learned", "default"]

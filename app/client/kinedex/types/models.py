@@ -110,23 +110,3 @@ class ModelList(Page[Model]):
     items: list[Model]
     unfitted: list[UnfittedModel]
     next: str | None
-
-
-@dataclass(frozen=True, slots=True)
-class Signature(Record):
-    """The signature of a person, as a point."""
-
-    person: str
-    point: list[float]
-
-
-@dataclass(frozen=True, slots=True)
-class Signatures(Page[Signature]):
-    """The signatures of all persons (Vasilescu 2002); `next` is always null.
-
-    variance_kept: Share of the signatures' variance that two dimensions show.
-    """
-
-    variance_kept: float
-    items: list[Signature]
-    next: str | None

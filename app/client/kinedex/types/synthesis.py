@@ -12,6 +12,21 @@ from kinedex.types.views import Motion
 
 
 @dataclass(frozen=True, slots=True)
+class QualityWarning(Record):
+    """A reason not to trust a motion.
+
+    code: `jerky` or `feet_slide`.
+    value: Of the motion: m/s³ of jerk, or m/s of foot skate.
+    real: Of real takes of the task, in the same unit.
+    """
+
+    code: str
+    detail: str
+    value: float
+    real: float
+
+
+@dataclass(frozen=True, slots=True)
 class Quality(Record):
     """How similar the motion is to real clips, and how similar such motions usually are.
 
@@ -30,17 +45,22 @@ class Quality(Record):
     person_is_right: Whether that clip shows the requested person; null if the person has no
     name. If the person never recorded the task, the clip can hardly show both person and task.
     task_is_right: Whether that clip shows the requested task.
-    expected_hit: Measured when the model was fitted: combinations of person and task were left
-    out and synthesized. For this share of the motions, the nearest real clip was a take of the
-    same combination. Only motions of the same kind count: those that follow one take, or those
-    that do not. Null for `seen`.
-    expected_given: Number of persons (new_task) or tasks (new_person) from which these were
-    made.
-    expected_trials: Number of combinations that were left out.
-    real_hit: The same share for the real takes of these combinations, each compared with all
-    others: an upper bound for `expected_hit`. Null if no combination has two takes.
+    expected_hit: How likely a real take of the same person and task, if there were one, would
+    be the nearest real clip. Learned when the model was fitted, from combinations of person and
+    task that were left out and synthesized, by the number of given persons or tasks, by
+    `follows`, and by whether the nearest clip of others shows the task. Null for `seen`.
+    expected_given: Number of persons (new_task) or tasks (new_person) that it is for: that of
+    this motion, or the largest number that was tried.
+    expected_trials: Number of motions that were left out and synthesized to learn this.
+    real_hit: Share of real takes of such combinations whose nearest other clip is of the same
+    combination: an upper bound for `expected_hit`. Null if none has two takes.
     skate: Foot skate: mean horizontal speed of feet near the floor, m/s.
     real_skate: The same speed in real takes of the task.
+    jerk: Root mean square, over frames and joints, of the third derivative of the positions,
+    m/s³.
+    real_jerk: The same in real takes of the task.
+    warnings: If the motion has more than twice the jerk or the foot skate of real takes of the
+    task, do not use it as it is.
     """
 
     kind: SynthesisKind
@@ -60,6 +80,9 @@ class Quality(Record):
     real_hit: float | None
     skate: float
     real_skate: float | None
+    jerk: float
+    real_jerk: float | None
+    warnings: list[QualityWarning]
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,7 @@ const QUALITY = {
   real_hit: null,
   skate: 0.04,
   real_skate: 0.02,
+  warnings: [],
 } as unknown as Schemas["Quality"];
 
 describe("the quality of a motion", () => {
@@ -23,8 +24,14 @@ describe("the quality of a motion", () => {
     const said = inSentences(QUALITY, "ada", "high_kick");
     expect(said[0]).toContain('2 persons who did "high kick", and of 1 task that ada did');
     expect(said[1]).toContain("the person is another");
-    expect(said[2]).toContain("Of 8 such motions that were held out, 50 %");
+    expect(said[2]).toContain("About 50 % of such motions");
     expect(said[3]).toContain("4 cm/s, in real takes 2 cm/s");
+  });
+
+  it("warns of a motion that is much jerkier than real takes", () => {
+    const detail = "The motion is jerky: 900 m/s³, real takes of kick 200.";
+    const jerky = { ...QUALITY, warnings: [{ code: "jerky", detail, value: 900, real: 200 }] };
+    expect(inSentences(jerky, "ada", "kick").at(-1)).toBe(`Warning: ${detail}`);
   });
 
   it("warns of a motion that looks like another task", () => {

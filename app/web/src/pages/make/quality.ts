@@ -18,6 +18,7 @@ export function inSentences(quality: Quality, person: string, task: string): rea
     nearest(quality),
     expected(quality),
     skate(quality),
+    ...quality.warnings.map(({ detail }) => `Warning: ${detail}`),
   ].filter((sentence) => sentence !== "");
 }
 
@@ -47,7 +48,7 @@ function nearest({
 function expected({ expected_hit: hit, expected_trials: trials, real_hit: real }: Quality): string {
   if (hit === null || trials === null) return "";
   const bound = real === null ? "" : ` Real takes reach ${percent(real)}.`;
-  return `Of ${trials} such motions that were held out, ${percent(hit)} were nearest to a real take of the same person and task.${bound}`;
+  return `About ${percent(hit)} of such motions are nearest to a real take of the same person and task, judged by ${trials} that were held out.${bound}`;
 }
 
 function skate({ skate: own, real_skate: real }: Quality): string {
