@@ -26,6 +26,7 @@ def at_common_pace(track: BodyTrack) -> BodyTrack:
     pace = float(np.quantile(joint_speed(track), FAST_QUANTILE))
     # the bounds of the divisor are those of the change, and exclude 0
     change = COMMON_PACE / float(np.clip(pace, COMMON_PACE / MAX_CHANGE, COMMON_PACE * MAX_CHANGE))
+    change = min(change, track.frames - 1.0)  # two frames stay, without which nothing moves
 
     def played(values: FloatArray) -> FloatArray:
         return resample(values, track.rate * change, track.rate)

@@ -45,4 +45,5 @@ def _poses(features: FloatArray, span: FloatArray) -> FloatArray:
 
 
 def _movement(poses: FloatArray) -> float:
-    return float(np.sqrt(poses.var(axis=0, dtype=np.float64).sum())) + STILL
+    moved = poses - poses.mean(axis=0)
+    return float(np.sqrt(np.vecdot(moved, moved).mean())) + STILL

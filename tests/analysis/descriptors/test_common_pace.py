@@ -44,3 +44,7 @@ def test_a_rest_is_changed_by_the_limit_and_has_a_finite_vector() -> None:
     track = smooth_track(rest)
     assert at_common_pace(track).frames == pytest.approx(track.frames / MAX_CHANGE, abs=1)
     assert np.isfinite(_described(rest)["paced_vector"]).all()
+
+
+def test_two_frames_stay_two_frames() -> None:
+    assert at_common_pace(smooth_track(motion_of(standing(2)))).frames == 2

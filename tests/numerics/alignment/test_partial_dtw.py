@@ -14,7 +14,11 @@ from app.numerics.arrays import FloatArray
 
 def naive_inside(whole: FloatArray, other: FloatArray) -> float:
     """The slow twin: each frame of `whole` is matched, the partner never goes back."""
-    cost = np.linalg.norm(whole[:, None] - other[None], axis=2)
+    middles = (other[1:] + other[:-1]) / 2
+    points = [*other[:1]]
+    for middle, frame in zip(middles, other[1:], strict=True):
+        points += [middle, frame]
+    cost = np.linalg.norm(whole[:, None] - np.array(points), axis=2)
 
     def cheapest(i: int, j: int) -> float:
         if i == 0:
@@ -22,11 +26,11 @@ def naive_inside(whole: FloatArray, other: FloatArray) -> float:
         before = [cheapest(i - 1, j - step) for step in range(MAX_STEP + 1) if step <= j]
         return float(cost[i, j]) + min(before)
 
-    return min(cheapest(len(whole) - 1, j) for j in range(len(other))) / len(whole)
+    return min(cheapest(len(whole) - 1, j) for j in range(len(points))) / len(whole)
 
 
 @given(
-    n=st.integers(1, 6), lengths=st.lists(st.integers(1, 6), max_size=4), seed=st.integers(0, 99)
+    n=st.integers(1, 4), lengths=st.lists(st.integers(1, 4), max_size=4), seed=st.integers(0, 99)
 )
 @settings(max_examples=40, deadline=None)
 def test_both_distances_equal_a_naive_computation(n: int, lengths: list[int], seed: int) -> None:
