@@ -64,6 +64,7 @@ def _arrays(number: int) -> dict[str, Any]:
     body = walking(FRAMES / 30)[:FRAMES].astype(np.float32)
     return {
         "motion_vector": rng.normal(size=128).astype(np.float32),
+        "paced_vector": rng.normal(size=128).astype(np.float32),
         "features_10hz": rng.normal(size=(100, 82)).astype(np.float32),
         "active_span": np.array([0.0, FRAMES / 30], dtype=np.float32),
         "msv_rho": rng.normal(size=13).astype(np.float32),

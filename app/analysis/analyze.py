@@ -2,7 +2,8 @@
 
 Arrays (float32 if nothing else is said; n frames at 30 Hz, m at 10 Hz; a frames of the active
 part at 30 Hz): role_positions (n, 13, 3) meters, world; features_10hz (m, 82); active_span (2,)
-seconds; motion_vector (128,); wide_motion_vector (512,); msv_lambda (1,), msv_rho (13,),
+seconds; motion_vector (128,); paced_vector (128,), the same at a common pace;
+wide_motion_vector (512,); msv_lambda (1,), msv_rho (13,),
 msv_epsilon (a,), msv_convergence (i, 2), the error and the change of lambda after each of
 i iterations; motion_sample (1250,);
 angle_sample (642,); motion_shape (1378,); symbol_statistics (131,); window_vectors_* (w, 125)
@@ -27,10 +28,11 @@ from numpy.typing import NDArray
 
 from app.analysis.descriptors.active_part import active_span
 from app.analysis.descriptors.angle_sample import angle_sample
+from app.analysis.descriptors.common_pace import at_common_pace
 from app.analysis.descriptors.frame_features import features_at_10hz, frame_features
 from app.analysis.descriptors.motion_sample import motion_sample
 from app.analysis.descriptors.motion_shape import motion_shape
-from app.analysis.descriptors.motion_vector import describe, narrow, wide
+from app.analysis.descriptors.motion_vector import describe, motion_vector, narrow, wide
 from app.analysis.descriptors.motion_volume import decompose
 from app.analysis.descriptors.pose_cover import pose_cover
 from app.analysis.descriptors.windows import WINDOW_SCALES, window_arrays
@@ -165,6 +167,11 @@ class _Parts:
         return describe(frame_features(self.active))
 
     @cached_property
+    def paced_vector(self) -> FloatArray:
+        """(128,) the motion vector of the active part at a common pace."""
+        return motion_vector(frame_features(at_common_pace(self.active)))
+
+    @cached_property
     def volume(self) -> Rank1:
         """The rank-1 factors of the motion volume."""
         return decompose(self.active)
@@ -190,6 +197,7 @@ _FLOAT32: dict[str, Callable[[_Parts], FloatArray]] = {
     "features_10hz": lambda parts: parts.features_10hz,
     "active_span": lambda parts: np.array(parts.span) / parts.track.rate,
     "motion_vector": lambda parts: narrow(parts.described),
+    "paced_vector": lambda parts: parts.paced_vector,
     "wide_motion_vector": lambda parts: wide(parts.described),
     "msv_lambda": lambda parts: np.array([parts.volume.weight]),
     "msv_rho": lambda parts: parts.volume.primary,

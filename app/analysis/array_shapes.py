@@ -16,6 +16,7 @@ SHAPES: Mapping[str, tuple[int | None, ...]] = {
     "features_10hz": (None, 82),
     "active_span": (2,),
     "motion_vector": (128,),
+    "paced_vector": (128,),
     "wide_motion_vector": (512,),
     "msv_lambda": (1,),
     "msv_rho": (13,),

@@ -52,6 +52,12 @@ def search(
         int | None,
         typer.Option(help="With --scope segments: the segment of the clip, counted from 0."),
     ] = None,
+    tempo: Annotated[
+        str,
+        typer.Option(
+            help="Method fused: any (also faster, slower, cut or repeated) or same (as it is)."
+        ),
+    ] = "any",
     mode: Annotated[
         str, typer.Option(help="Mode of a search by words: default or cca.")
     ] = "default",
@@ -81,6 +87,7 @@ def search(
         "method": method.value,
         "scope": scope,
         "segment": segment,
+        "tempo": tempo,
         "limit": limit,
         "filter": fields,
         "include_self": include_self,

@@ -43,7 +43,7 @@ def test_arrays_are_finite_with_documented_shapes_and_types(body: FloatArray) ->
     shapes = {
         "role_positions": (n, 13, 3), "features_10hz": ((n - 1) // 3 + 1, 82),
         "active_span": (2,),
-        "motion_vector": (128,), "wide_motion_vector": (512,),
+        "motion_vector": (128,), "paced_vector": (128,), "wide_motion_vector": (512,),
         "msv_lambda": (1,), "msv_rho": (13,), "msv_epsilon": (n,),
         "msv_convergence": (len(arrays["msv_convergence"]), 2),
         "pose_cover": (len(arrays["pose_cover"]), 38),

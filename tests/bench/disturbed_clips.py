@@ -13,13 +13,14 @@ from app.models.recognition.disturbances import Disturb, faster, jitter, kept, n
 from app.motion.canonical.canonical import canonicalize
 from app.motion.motion import Motion
 from app.numerics.binomial import wilson_interval
-from app.search.index.vector_index import VECTOR
+from app.search.index.vector_index import PACED, VECTOR
 from tests.bench.disturbances import repeated, waiting, without_first
 from tests.real_clips import manifest, real_clips
 
 POSITIONS = "role_positions"
 ARRAYS = (
     VECTOR,
+    PACED,
     "features_10hz",
     "active_span",
     POSITIONS,

@@ -13,12 +13,10 @@ import pytest
 
 from app.models.held_out.ranking import average_precision
 from app.models.recognition.disturbances import Disturb
-from app.search.example.distances import distances_to
 from app.search.example.methods import Method
-from app.search.index.vector_index import VECTOR
 from tests.bench.disturbed_clips import DISTURBANCES, Stored, described, drawn, share, stored
 from tests.bench.page import Section
-from tests.search.fused import fused_distances
+from tests.search.local_index import LocalLibrary
 
 FIGURES = Section(
     "disturbances",
@@ -29,6 +27,7 @@ FIGURES = Section(
 
 pytestmark = pytest.mark.bench
 
+METHODS = (Method.FUSED, Method.VECTOR, Method.DTW)
 FLOORS = {
     "as stored": 1.0,
     "jitter .5 degrees": 0.97,
@@ -41,12 +40,13 @@ FLOORS = {
 def test_search() -> None:
     """The original is stored; relevant are the other clips of the task."""
     library = stored()
+    indexed = LocalLibrary({str(i): arrays for i, arrays in enumerate(library.arrays)})
     second = [row["path"].startswith("bandai-namco-2") for row in library.rows]
     asked = drawn(np.flatnonzero(second), 40)
     FIGURES.print(f"{'search':24}{'':8}{'original first':26}{'1-NN':>8}{'P@20':>8}{'MAP':>8}")
     for name, disturb in DISTURBANCES.items():
-        found = [_ranked(library, i, disturb) for i in asked]
-        for method in (Method.FUSED, Method.VECTOR, Method.DTW):
+        found = [_ranked(library, indexed, i, disturb) for i in asked]
+        for method in METHODS:
             rows = [one[method] for one in found]
             first = [bool(row[0]) for row in rows]
             others = np.mean([row[1:] for row in rows], axis=0)
@@ -58,26 +58,14 @@ def test_search() -> None:
 
 
 def _ranked(
-    library: Stored, index: int, disturb: Disturb
+    library: Stored, indexed: LocalLibrary, index: int, disturb: Disturb
 ) -> dict[Method, tuple[bool, bool, float, float]]:
     """Whether the original is first, then 1-NN, P@20 and AP without it, by method."""
     query = described(disturb(library.motions[index], int(index)))
-    vectors = np.stack([arrays[VECTOR] for arrays in library.arrays]).astype(np.float64)
-    ids = [str(i) for i in range(len(vectors))]
-
-    def load(clip_ids: list[str], name: str) -> dict[str, np.ndarray]:
-        return {clip_id: library.arrays[int(clip_id)][name] for clip_id in clip_ids}
-
-    warped = distances_to(query, ids, Method.DTW, load)
-    distances = {
-        Method.DTW: warped,
-        Method.VECTOR: np.linalg.norm(vectors - query[VECTOR], axis=1),
-        Method.FUSED: fused_distances(query[VECTOR].astype(np.float64), vectors, warped),
-    }
     tasks = library.labels("task")
     figures = {}
-    for method, far in distances.items():
-        order = np.argsort(far, kind="stable")
+    for method in METHODS:
+        order = indexed.rank(query, method).ids.astype(int)
         others = order[order != index]
         relevant = tasks[others] == tasks[index]
         figures[method] = (

@@ -41,7 +41,15 @@ pytestmark = pytest.mark.bench
 
 COUNTS = [int(n) for n in os.environ.get("KINEDEX_BENCH_CLIPS", "500,10000,100000").split(",")]
 REQUESTS = 100
-NAMES = ("features_10hz", "msv_rho", "msv_epsilon", "pose_cover", "role_positions")
+NAMES = (
+    "paced_vector",
+    "features_10hz",
+    "active_span",
+    "msv_rho",
+    "msv_epsilon",
+    "pose_cover",
+    "role_positions",
+)
 """Arrays that these searches read."""
 SEARCHES: dict[str, dict[str, Any]] = {
     "vector": {"method": "vector"},

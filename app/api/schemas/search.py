@@ -27,6 +27,13 @@ class _MotionOptions(QueryFields):
         "segments: motions from one keypose to the next are compared by their vectors; the query "
         "is taken as one segment.",
     )
+    tempo: Literal["any", "same"] = Field(
+        "any",
+        description="For method fused with scope clips. any: the motion is also found played "
+        "faster or slower, cut, or repeated; of two equal hits, the one at the tempo of the query "
+        "comes first. same: tempo is a part of the motion, and whole clips are compared as they "
+        "are.",
+    )
     include_self: bool = Field(
         False,
         description="Whether the query clip may be a hit. A file that is stored already counts as "
@@ -45,6 +52,7 @@ class _MotionOptions(QueryFields):
             filter=None if self.filter is None else self.filter.given(),
             scope=self.scope,
             segment=segment,
+            tempo=self.tempo,
             include_self=self.include_self,
             cursor=self.cursor,
         )

@@ -111,6 +111,7 @@ def judge_retrieval(
     _check(k, threshold, max_queries)
     grouping = Grouping.of(by)
     lib.index.catch_up(lib.store)
+    lib.paced.catch_up(lib.store)
     labeled = read_labeled(lib, filter)
     chosen = labeled.chosen(classes, HIDDEN_CLASSES)
     queries = labeled.queries(max_queries)

@@ -35,7 +35,8 @@ def by_method(lib: Library, method: Method, filter: ClipFilter | None) -> Ranker
 
     def rank(clip: ClipRecord) -> Sequence[str]:
         query, itself = _query(lib, clip), frozenset({clip.id})
-        found = rank_by_example(lib.index, query, method, filter or ClipFilter(), itself, load)
+        passing = filter or ClipFilter()
+        found = rank_by_example(lib.index, query, method, passing, itself, load, paced=lib.paced)
         return list(found.ids)
 
     return rank

@@ -19,14 +19,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from app.deadline import check
+from app.numerics.alignment.cost_tables import (
+    MAX_CELLS_AT_ONCE,
+    as_table,
+    batches,
+    costs,
+    side_by_side,
+)
 from app.numerics.arrays import FloatArray, IntArray
-from app.numerics.euclidean import distances, squared_lengths
-
-MAX_CELLS_AT_ONCE = 1_000_000
-"""The largest number of cost cells of one batch (4 bytes each). So a batch fits the caches."""
-
-MAX_BATCH = 256
-"""The largest number of candidates in a batch."""
 
 STRIP_CELLS = 16_000_000
 """The number of cost cells of one strip of a long pair, within MIN_ROWS and MAX_ROWS."""
@@ -47,71 +47,22 @@ def dtw_distances(
     computed in float32. Raises ValueError for an empty sequence, and DeadlineExceeded or
     ClientLeft (app.deadline).
     """
-    query = _as_table(query)
+    query = as_table(query)
     lengths = np.array([len(candidate) for candidate in candidates], dtype=np.int64)
     if not len(query) or (len(lengths) and not lengths.min()):
         raise ValueError("cannot warp an empty sequence")
     totals = np.empty(len(lengths))
     center = query.mean(axis=0)  # differences of small numbers keep more digits
-    for batch in _batches(lengths, len(query)):
+    for batch in batches(lengths, len(query)):
         check()
-        frames = np.concatenate([_as_table(candidates[i]) for i in batch])
+        frames = np.concatenate([as_table(candidates[i]) for i in batch])
         frames -= center  # in place: these rows are wide, and new memory costs time
         if len(query) * len(frames) > MAX_CELLS_AT_ONCE:
             totals[batch] = _in_strips(query - center, frames)
             continue
-        cost = _side_by_side(_costs(query - center, frames, lengths[batch]), lengths[batch])
+        cost = side_by_side(costs(query - center, frames, lengths[batch]), lengths[batch])
         totals[batch] = _accumulate(cost, lengths[batch])
     return totals / (len(query) + lengths) if per_step else totals
-
-
-def _as_table(sequence: FloatArray) -> FloatArray:
-    table = np.asarray(sequence, dtype=np.float32)
-    return table[:, None] if table.ndim == 1 else table
-
-
-def _batches(lengths: IntArray, frames: int) -> list[IntArray]:
-    """Indices of candidates in groups of similar length whose costs fit MAX_CELLS_AT_ONCE.
-
-    lengths: (c,). frames: the length of the query.
-    """
-    order = np.argsort(-lengths, kind="stable")
-    batches: list[IntArray] = []
-    first = 0
-    while first < len(order):
-        # lengths fall, so the first candidate of a batch is its longest
-        max_length = int(lengths[order[first]])
-        count = int(np.clip(MAX_CELLS_AT_ONCE // (frames * max_length), 1, MAX_BATCH))
-        batches.append(order[first : first + count])
-        first += count
-    return batches
-
-
-def _costs(query: FloatArray, frames: FloatArray, lengths: IntArray) -> FloatArray:
-    """(n, k) float32 Euclidean distances of `query` (n, d) to `frames` (k, d).
-
-    frames: the candidates of `lengths` (c,) one after the other. Each candidate is multiplied
-    alone, so that the cost of a pair does not depend on the other candidates of its batch: a
-    ranking that is computed in pieces must agree with itself to the last bit.
-    """
-    if query.shape[1] == 1:
-        differences = query - frames[:, 0]
-        return np.asarray(np.abs(differences, out=differences))
-    ends = np.cumsum(lengths).tolist()
-    parts = [slice(first, stop) for first, stop in zip([0, *ends], ends, strict=False)]
-    return distances(query, frames, squared_lengths(frames), parts)
-
-
-def _side_by_side(table: FloatArray, lengths: IntArray) -> FloatArray:
-    """(n, m, c) C-contiguous costs, from `table` (n, k) of c candidates one after the other.
-
-    lengths: (c,), of which m is the largest. Costs are moved, because frames are wider. After
-    its end, a candidate repeats the costs of its last frame.
-    """
-    starts = np.cumsum(lengths) - lengths
-    inside = np.minimum(np.arange(lengths.max())[:, None], lengths - 1)
-    moved: FloatArray = np.take(table, (starts + inside).ravel(), axis=1)
-    return moved.reshape(len(table), int(lengths.max()), len(lengths))
 
 
 def _accumulate(cost: FloatArray, lengths: IntArray) -> FloatArray:
@@ -155,7 +106,7 @@ def _in_strips(query: FloatArray, frames: FloatArray) -> float:
     count = int(np.clip(STRIP_CELLS // columns, MIN_ROWS, MAX_ROWS))
     for first in range(0, len(query), count):
         rows = query[first : first + count]
-        above = _last_row(_costs(rows, frames, np.array([columns])), above)
+        above = _last_row(costs(rows, frames, np.array([columns])), above)
     return float(above[columns])
 
 

@@ -84,9 +84,8 @@ class PartsRanking:
     def _rows(self) -> dict[str, int]:
         return {clip_id: row for row, clip_id in enumerate(self._ids)}
 
-    def _rerank(self, shortlist: Page) -> LowerBounds:
-        """The distances of the shortlist by the second stages."""
-        ids = shortlist.ids
+    def _rerank(self, ids: IdArray) -> LowerBounds:
+        """The distances of the clips (m,) of the shortlist by the second stages."""
         rows = np.array([self._rows[clip_id] for clip_id in ids], dtype=np.int64)
         stages = [_Shortlisted.of(one, ids, rows) for one in self._evidence]
 

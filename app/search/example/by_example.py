@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 
 from app.numerics.arrays import FloatArray, IntArray
+from app.search.example.containment import containment_distances
 from app.search.example.distances import (
     ACTIVE,
     EPSILON,
@@ -17,17 +18,21 @@ from app.search.example.distances import (
     distances_to,
 )
 from app.search.example.fusion import SHORTLIST, FusedDistance
+from app.search.example.guests import GUESTS, Guests
 from app.search.example.methods import Method
 from app.search.example.reranking import ShortlistRanking
 from app.search.index.nearest_ranking import NearestRanking
-from app.search.index.vector_index import VECTOR, VectorIndex
+from app.search.index.vector_index import PACED, VECTOR, VectorIndex
 from app.search.ranking.cursor import Anchor
 from app.search.ranking.lower_bounds import LowerBounds
-from app.search.ranking.ranking import IdArray, Page, Ranked, Ranking
+from app.search.ranking.ranking import IdArray, Ranked, Ranking
 from app.store.clips.filter import ClipFilter
 
-COMPARED = (VECTOR, FEATURES, ACTIVE, RHO, EPSILON)
+COMPARED = (VECTOR, PACED, FEATURES, ACTIVE, RHO, EPSILON)
 """Names of the arrays of a query that the methods compare, but for learned metrics."""
+
+CONSULTED = 30
+"""Number of nearest clips by the vectors, beside the guests, that are tested for containment."""
 
 SCALES = {
     Method.FUSED: 5.0,
@@ -47,34 +52,57 @@ def rank_by_example(
     exclude: frozenset[str],
     load: Loader,
     anchor: Anchor | None = None,
+    paced: VectorIndex | None = None,
 ) -> Ranked:
     """All clips that pass the filter and are not excluded, in order of distance.
 
     exclude: clip ids. load: loads arrays of clips. anchor: from the cursor of the request, if the
-    request has one.
+    request has one. paced: the index of the vectors at a common pace, for `fused` at any tempo.
     """
     if method in (Method.FUSED, Method.VECTOR):
         near = index.nearest(query[VECTOR], clip_filter, exclude)
         if method is Method.VECTOR:
             return near
-        return ShortlistRanking(near, partial(_reranked, query, near, load), SHORTLIST, anchor)
+        if paced is None:
+            reranked = partial(_reranked, query, near, load)
+            return ShortlistRanking(near, reranked, SHORTLIST, anchor)
+        guests = Guests(near, paced.nearest(query[PACED], clip_filter, exclude))
+        reranked = partial(_at_any_tempo, query, guests, load)
+        return ShortlistRanking(near, reranked, SHORTLIST, anchor, guests)
     ids = index.candidates(clip_filter, exclude).ids
     return _ranking(ids, distances_to(query, list(ids), method, load))
 
 
-def _reranked(
-    query: Descriptors, near: NearestRanking, load: Loader, shortlist: Page
-) -> LowerBounds:
-    return fused(query, shortlist.ids, near.vectors(shortlist.ids), load)
+def _reranked(query: Descriptors, near: NearestRanking, load: Loader, ids: IdArray) -> LowerBounds:
+    return fused(query, ids, near.vectors(ids), load)
 
 
 def fused(query: Descriptors, ids: IdArray, vectors: FloatArray, load: Loader) -> LowerBounds:
-    """The fused distances of the clips of a shortlist.
+    """The fused distances of the clips of a shortlist, at the query's tempo.
 
-    Warping is the slowest part, so it is measured last, and only if a page needs it. ids: (m,);
-    vectors: (m, 128) the motion vectors of these clips.
+    ids: (m,); vectors: (m, 128) the motion vectors of these clips.
     """
-    by_vectors = FusedDistance.of(query[VECTOR], vectors)
+    return _warped_last(query, ids, FusedDistance.of(query[VECTOR], vectors), load)
+
+
+def _at_any_tempo(query: Descriptors, guests: Guests, load: Loader, ids: IdArray) -> LowerBounds:
+    by_vectors = FusedDistance.of(query[VECTOR], guests.first.vectors(ids))
+    paced = guests.view.distances_of(ids)
+    consulted = np.union1d(_nearest(by_vectors.near, CONSULTED), _nearest(paced, GUESTS))
+    contained = np.full(len(ids), np.inf)
+    contained[consulted] = containment_distances(query, ids[consulted].tolist(), load)
+    return _warped_last(query, ids, by_vectors.at_any_tempo(paced, contained), load)
+
+
+def _nearest(distances: FloatArray, count: int) -> IntArray:
+    """The indices of the `count` smallest distances; equal ones in their order."""
+    return np.argsort(distances, kind="stable")[:count]
+
+
+def _warped_last(
+    query: Descriptors, ids: IdArray, by_vectors: FusedDistance, load: Loader
+) -> LowerBounds:
+    """Warping is the slowest part, so it is measured last, and only if a page needs it."""
 
     def measure(rows: IntArray) -> FloatArray:
         warped = distances_to(query, ids[rows].tolist(), Method.DTW, load)

@@ -2,17 +2,20 @@
 
 The other clips follow in the order of the first stage. A cursor stores the end of the shortlist
 (`Anchor`). So the next page has the same shortlist, also after clips were added and deleted.
+Another view of the clips may add its nearest ones to the shortlist (`Guests`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
 from app.numerics.arrays import FloatArray
 from app.numerics.nearest import DECIMALS
+from app.search.example.guests import Guests
 from app.search.ranking.cursor import Anchor, Position
 from app.search.ranking.lower_bounds import LowerBoundRanking, LowerBounds
 from app.search.ranking.ranking import FirstStage, IdArray, Page
@@ -20,8 +23,8 @@ from app.search.ranking.ranking import FirstStage, IdArray, Page
 STEP = 10.0**-DECIMALS
 """Added to the distances after the shortlist, so that each is larger than all in the shortlist."""
 
-Rerank = Callable[[Page], LowerBounds]
-"""Returns the clips of a shortlist with the distances of the second stage."""
+Rerank = Callable[[IdArray], LowerBounds]
+"""Returns the clips (m,) of a shortlist with the distances of the second stage."""
 
 
 class ShortlistRanking:
@@ -33,17 +36,24 @@ class ShortlistRanking:
     """
 
     def __init__(
-        self, first: FirstStage, rerank: Rerank, size: int, anchor: Anchor | None = None
+        self,
+        first: FirstStage,
+        rerank: Rerank,
+        size: int,
+        anchor: Anchor | None = None,
+        guests: Guests | None = None,
     ) -> None:
         """Prepare the ranking; distances are measured when a page is read.
 
         first: the first stage, of all clips. rerank: the second stage. size: of the shortlist.
-        anchor: from the cursor of the page before, None for the first page.
+        anchor: from the cursor of the page before, None for the first page. guests: clips that
+        join the shortlist; `first` must rank them too.
         """
         self._first = first
         self._rerank = rerank
         self._size = size
         self._given = anchor
+        self._guests = guests
         self._seen = 0.0  # the distance of the last clip on earlier pages
 
     def __len__(self) -> int:
@@ -62,8 +72,9 @@ class ShortlistRanking:
             # Clips on earlier pages must not be farther than the clips of later pages.
             end = max(end, self._seen)
         if given is not None:
-            return Anchor(given.distance, given.clip_id, end)
-        return Anchor(float(shortlist.distances[-1]), str(shortlist.ids[-1]), end)
+            return replace(given, end=end)
+        last = float(shortlist.distances[-1]), str(shortlist.ids[-1])
+        return Anchor(*last, end, self._last_guest)
 
     @property
     def ids(self) -> IdArray:
@@ -109,7 +120,11 @@ class ShortlistRanking:
 
     def _rest(self, shift: float, after: Position, limit: int) -> Page:
         """The clips after a position of the first stage, with final distances."""
-        page = self._first.page(after, limit)
+        page = (
+            self._first.page(after, limit)
+            if self._guests is None
+            else self._guests.page(self._outside, after, limit)
+        )
         return Page(page.ids, np.round(page.distances + shift, DECIMALS), page.more)
 
     @cached_property
@@ -123,8 +138,31 @@ class ShortlistRanking:
         return self._first.until(self._given.distance, self._given.clip_id)
 
     @cached_property
+    def _invited(self) -> Page | None:
+        """The clips of the other view; None without one."""
+        given = self._given
+        if self._guests is None or (given is not None and given.guest is None):
+            return None
+        return self._guests.invited(None if given is None else given.guest)
+
+    @property
+    def _last_guest(self) -> tuple[float, str] | None:
+        invited = self._invited
+        if invited is None or not len(invited.ids):
+            return None
+        return float(invited.distances[-1]), str(invited.ids[-1])
+
+    @cached_property
+    def _outside(self) -> IdArray:
+        """The guests that are not among the first clips of the first stage."""
+        if self._guests is None or self._invited is None:
+            return np.array([], dtype=object)
+        return self._guests.outside(self._invited.ids, set(self._shortlist.ids))
+
+    @cached_property
     def _head(self) -> LowerBoundRanking:
-        clips, given = self._rerank(self._shortlist), self._given
+        ids = np.concatenate([self._shortlist.ids, self._outside])
+        clips, given = self._rerank(ids), self._given
         if given is None or given.end is None:
             return LowerBoundRanking(clips)
         # New clips must not get larger distances than the clips after the shortlist.

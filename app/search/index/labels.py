@@ -155,6 +155,15 @@ class LabelView:
         """(m,) the numbers of clips (m,), which must be in the index."""
         return np.array([self._numbers_of(clip_id)[-1] for clip_id in ids], dtype=np.int64)
 
+    def find(self, ids: IdArray) -> IntArray:
+        """(m,) the numbers of clips (m,), -1 for those that are not in the index.
+
+        A clip that changed after this view was made counts as one that is not in it. To look for
+        its earlier number takes a pass over all clips.
+        """
+        numbers = (self.labels.number_of.get(clip_id, -1) for clip_id in ids)
+        return np.array([n if n < len(self.ids) else -1 for n in numbers], dtype=np.int64)
+
     def _numbers_of(self, clip_id: str) -> list[int]:
         number = self.labels.number_of.get(clip_id)
         if number is not None and number < len(self.ids):

@@ -70,6 +70,26 @@ class NearestRanking:
         """(m, width) float32 vectors of the clips `ids` (m,) of a page."""
         return gather(self._rows.blocks, self._rows.labels.numbers(ids))
 
+    def among(self, ids: IdArray) -> BoolArray:
+        """(m,) whether each of the clips `ids` (m,) is ranked."""
+        ranked = np.append(self._mask, False)  # the last one is for clips without a number
+        return np.asarray(ranked[self._rows.labels.find(ids)])
+
+    def distances_of(self, ids: IdArray) -> FloatArray:
+        """(m,) float64 distances of the clips `ids` (m,); infinity for those not ranked."""
+        known, far = self.among(ids), np.full(len(ids), np.inf)
+        if not known.any():  # the index may have no vectors at all
+            return far
+        away = self.vectors(ids[known]).astype(np.float64) - self._query
+        far[known] = np.sqrt(np.vecdot(away, away))
+        return far
+
+    def without(self, ids: IdArray) -> NearestRanking:
+        """The ranking without the clips `ids` (m,), which are in the index."""
+        mask = self._mask.copy()
+        mask[self._rows.labels.numbers(ids)] = False
+        return NearestRanking(self.version, self._rows, mask, self._query)
+
     @cached_property
     def _whole(self) -> Ranking:
         rows = np.flatnonzero(self._mask)

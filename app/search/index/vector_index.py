@@ -29,6 +29,8 @@ from app.store.store import Store
 VECTOR = "motion_vector"
 WIDTH = 128
 MOTION_VECTORS = Layout((VECTOR,), WIDTH)
+PACED = "paced_vector"
+PACED_VECTORS = Layout((PACED,), WIDTH)
 
 JOIN_BATCH = 64
 """Number of clips whose arrays are in memory at a time while they are joined. An hour of motion has

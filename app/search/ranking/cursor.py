@@ -28,12 +28,14 @@ class Anchor:
 
     distance, clip_id: of the farthest clip of the shortlist, before it was ranked again. end: the
     largest distance in the shortlist afterwards; all other clips are farther. It is None until
-    the whole shortlist is measured.
+    the whole shortlist is measured. guest: the distance and the id of the last clip that another
+    view added to the shortlist, before it was ranked again; None without such a view.
     """
 
     distance: float
     clip_id: str
     end: float | None
+    guest: tuple[float, str] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +64,7 @@ def encode(position: Position, query: str) -> str:
         query, position.rank, position.distance, position.clip_id
     ]  # fmt: skip
     if (anchor := position.anchor) is not None:
-        values += [anchor.distance, anchor.clip_id, anchor.end]
+        values += [anchor.distance, anchor.clip_id, anchor.end, *(anchor.guest or ())]
     if position.scales:
         values.append(list(position.scales))
     return cursor_codec.encode(values)
@@ -91,8 +93,14 @@ def decode(cursor: str, query: str) -> Position:
 
 
 def _anchor(values: list[object]) -> Anchor:
-    distance, clip_id, end = values
-    return Anchor(as_number(distance), as_text(clip_id), None if end is None else as_number(end))
+    distance, clip_id, end, *guest = values
+    last = None if end is None else as_number(end)
+    return Anchor(as_number(distance), as_text(clip_id), last, _guest(guest) if guest else None)
+
+
+def _guest(values: list[object]) -> tuple[float, str]:
+    distance, clip_id = values
+    return as_number(distance), as_text(clip_id)
 
 
 def _scales(values: list[object]) -> tuple[float, ...]:

@@ -23,6 +23,7 @@ from app.services.find.paging import Match, MatchPage, Paging
 from app.services.find.queries import (
     RANKED_BY_IN_SEGMENTS,
     SCOPES,
+    TEMPOS,
     WORD_MODES,
     MotionQuery,
     WordQuery,
@@ -43,6 +44,8 @@ def find_motion(lib: Library, query: MotionQuery) -> Hits:
     fields.limit(query.limit)
     if query.scope not in SCOPES:
         raise fields.bad_field("scope", f"must be one of {', '.join(SCOPES)}")
+    if query.tempo not in TEMPOS:
+        raise fields.bad_field("tempo", f"must be one of {', '.join(TEMPOS)}")
     version = lib.index.catch_up(lib.store)
     ranked_by = RANKED_BY_IN_SEGMENTS if query.scope == "segments" else method
     page = _search(query, method)(lib, query, method, clip_filter)
@@ -104,10 +107,13 @@ def _by_example(
     arrays = described.arrays
     # An upload has no id: the cursor identifies it by a hash of its descriptors.
     content = hashlib.sha256(arrays[FEATURES].tobytes()).hexdigest()
+    paced = lib.paced if method is Method.FUSED and query.tempo == "any" else None
     question = cursors.digest(
-        query.source.clip_id, content, method, clip_filter, query.include_self
+        query.source.clip_id, content, method, clip_filter, query.include_self, paced is None
     )
     paging = Paging.at(query.cursor, question, query.clip_fields)
+    if paced is not None:
+        paced.catch_up(lib.store)
     found = rank_by_example(
         lib.index,
         arrays,
@@ -116,6 +122,7 @@ def _by_example(
         described.excluded_clips(include_self=query.include_self),
         partial(lib.arrays.get_many, lib.store),
         paging.anchor,
+        paced,
     )
     return _page(lib, found, paging, query.limit, partial(score, scale=SCALES[method]))
 

@@ -13,6 +13,7 @@ from app.store.clips.filter import ClipFilter
 DEFAULT_LIMIT = 10
 WORD_MODES = ("default", "cca")
 SCOPES = ("clips", "windows", "segments")
+TEMPOS = ("any", "same")
 RANKED_BY_IN_SEGMENTS = Method.VECTOR
 
 Filter = ClipFilter | Mapping[str, Any] | None
@@ -25,9 +26,11 @@ class MotionQuery:
 
     scope: "clips" compares whole clips; "windows" finds parts of clips, at any time in a clip;
     "segments" finds motions from one keypose to the next. segment: only with scope "segments", the
-    index of a segment of the queried clip, which is then the query. limit: 1 to 1,000 hits;
-    include_self: whether the query itself may be a hit; cursor: `next` of the page before;
-    clip_fields: fields of each hit's clip that are needed, None for all.
+    index of a segment of the queried clip, which is then the query. tempo: for the method fused
+    with scope "clips": "any" also finds the motion at another tempo, cut, or repeated; "same"
+    compares whole clips at the tempo that they have. limit: 1 to 1,000 hits; include_self: whether
+    the query itself may be a hit; cursor: `next` of the page before; clip_fields: fields of each
+    hit's clip that are needed, None for all.
     """
 
     source: QuerySource
@@ -36,6 +39,7 @@ class MotionQuery:
     filter: Filter = None
     scope: str = "clips"
     segment: int | None = None
+    tempo: str = "any"
     include_self: bool = False
     cursor: str | None = None
     clip_fields: frozenset[str] | None = None

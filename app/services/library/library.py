@@ -12,7 +12,7 @@ from app.config import Settings
 from app.search.index.array_cache import ArrayCache
 from app.search.index.model_rows import ModelRows
 from app.search.index.projected_index import ProjectedIndex
-from app.search.index.vector_index import VectorIndex
+from app.search.index.vector_index import PACED_VECTORS, VectorIndex
 from app.search.pose.by_pose import POSES
 from app.search.windows.parts import parts_layout
 from app.services.library.analysis_pool import AnalysisPool, Limits
@@ -31,17 +31,19 @@ class Library:
     """The first argument of every service call. A process has one; threads may share it.
 
     health: whether the store can do its work; the API server starts it. index: the motion vectors
-    of all clips. arrays: descriptors in memory, for ranking again. word_scores, symbol_points:
-    the outputs of the word models for the clips in the index. pool: analyzes uploaded queries; a
-    worker has its own pool. windows: the windows of all clips, by the name of their scale;
-    segments: the segments of all clips; poses: the pose covers of all clips; the first search
-    that needs one of these three loads it. metrics: the clips' coordinates in each learned metric.
+    of all clips; paced: the same at a common pace. arrays: descriptors in memory, for ranking
+    again. word_scores, symbol_points: the outputs of the word models for the clips in the index.
+    pool: analyzes uploaded queries; a worker has its own pool. windows: the windows of all clips,
+    by the name of their scale; segments: the segments of all clips; poses: the pose covers of all
+    clips; the first search that needs paced or one of these three loads it. metrics: the clips'
+    coordinates in each learned metric.
     """
 
     settings: Settings
     store: Store
     health: Health
     index: VectorIndex
+    paced: VectorIndex
     arrays: ArrayCache
     models: FittedModels
     word_scores: ModelRows
@@ -71,6 +73,7 @@ class Library:
             store=store,
             health=Health(store),
             index=index,
+            paced=VectorIndex(layout=PACED_VECTORS),
             arrays=cache,
             models=FittedModels(),
             word_scores=ModelRows(),

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from app.deadline import Deadline, within
 from app.errors import ClientLeft
-from app.numerics.alignment import dtw
+from app.numerics.alignment import cost_tables, dtw
 from app.numerics.alignment.dtw import dtw_distances
 from app.numerics.arrays import FloatArray
 
@@ -50,7 +50,8 @@ def test_many_batches_give_what_one_gives(monkeypatch: pytest.MonkeyPatch) -> No
     query = rng.normal(size=(9, 3))
     candidates = [rng.normal(size=(m, 3)) for m in rng.integers(1, 30, size=40)]
     at_once = dtw_distances(query, candidates)
-    monkeypatch.setattr(dtw, "MAX_CELLS_AT_ONCE", 500)
+    for module in (cost_tables, dtw):
+        monkeypatch.setattr(module, "MAX_CELLS_AT_ONCE", 500)
     np.testing.assert_allclose(dtw_distances(query, candidates), at_once, rtol=1e-5)
 
 

@@ -3,23 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any, cast
 
 import numpy as np
 import pytest
 
+from app.analysis.analyze import describe_for_search
 from app.numerics.alignment.dtw import dtw_distances
 from app.numerics.arrays import FloatArray
-from app.search.example.by_example import rank_by_example
+from app.search.example.by_example import COMPARED, rank_by_example
 from app.search.example.distances import ACTIVE, EPSILON, FEATURES, RHO, Descriptors
 from app.search.example.fusion import SHORTLIST
 from app.search.example.methods import Method
 from app.search.index.nearest_ranking import NearestRanking
 from app.search.index.rows import Rows
-from app.search.index.vector_index import MOTION_VECTORS, VECTOR, VectorIndex
+from app.search.index.vector_index import MOTION_VECTORS, PACED, VECTOR, VectorIndex
 from app.store.clips.filter import ClipFilter
+from tests.bodies import motion_of, walking, waving
 from tests.search.fused import fused_distances
 from tests.search.indexed import indexed
+from tests.search.local_index import LocalLibrary
 from tests.search.walking import walk
 
 COUNT = SHORTLIST + 40
@@ -102,6 +106,46 @@ def test_pages_of_fused_are_those_of_all_distances_measured_at_once(size: int) -
     assert listed[:SHORTLIST] == expected
     assert len({clip_id for _, clip_id in listed}) == len(listed) == COUNT
     assert [distance for distance, _ in listed] == sorted(distance for distance, _ in listed)
+
+
+def _walk(number: int) -> FloatArray:
+    return walking(arm=0.2 + 0.1 * number, turn=0.3 * number, speed=1.0 + 0.1 * number)
+
+
+def _motions() -> dict[str, dict[str, FloatArray]]:
+    """Walks on several curves, and waves, described."""
+    made = {f"walk {n}": _walk(n) for n in range(4)}
+    made |= {f"wave {n}": waving(3 + 0.3 * n) for n in range(4)}
+    return {
+        name: dict(describe_for_search(motion_of(body), COMPARED).arrays)
+        for name, body in made.items()
+    }
+
+
+@pytest.mark.parametrize("factor", [0.5, 1.5])
+def test_a_clip_at_another_tempo_finds_its_original(factor: float) -> None:
+    original = motion_of(_walk(1))
+    library = LocalLibrary(_motions())
+    played = replace(original, frame_rate=factor * original.frame_rate)
+    query = dict(describe_for_search(played, COMPARED).arrays)
+    assert library.rank(query, Method.FUSED).ids[0] == "walk 1"
+
+
+def test_pages_at_any_tempo_are_the_whole_ranking_also_without_vectors_at_a_common_pace() -> None:
+    clips = _motions()
+    del clips["walk 2"][PACED]  # a clip that waits for a new analysis
+    query = clips["walk 0"]
+    whole = LocalLibrary(clips).rank(query, Method.FUSED)
+    assert whole.ids[0] == "walk 0"
+    assert whole.distances[0] == 0.0
+    assert set(whole.ids) == set(clips)
+    pages = walk(
+        lambda after: LocalLibrary(clips).rank(
+            query, Method.FUSED, anchor=after.anchor if after else None
+        ),
+        3,
+    )
+    assert [i for page in pages for i in page.ids] == list(whole.ids)
 
 
 def test_a_short_page_of_fused_reads_few_features() -> None:

@@ -77,3 +77,21 @@ def test_without_warping_it_is_a_lower_bound_and_rows_are_independent(seed: int)
     assert (known.distances(every, np.zeros(40)) <= found).all()
     some = rng.permutation(40)[:7]
     assert known.distances(some, warped[some]).tolist() == found[some].tolist()
+
+
+@given(seed=st.integers(0, 10_000))
+@settings(max_examples=20, deadline=None)
+def test_at_any_tempo_distances_only_fall_and_bounds_stay_bounds(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    query, vectors, warped = rng.normal(size=8), rng.normal(size=(40, 8)), rng.uniform(size=40)
+    paced = np.where(rng.uniform(size=40) < 0.2, np.inf, rng.uniform(0, 4, size=40))
+    contained = np.where(rng.uniform(size=40) < 0.5, np.inf, rng.uniform(size=40))
+    timed, every = FusedDistance.of(query, vectors), np.arange(40)
+    known = timed.at_any_tempo(paced, contained)
+    found = known.distances(every, warped)
+    assert (known.distances(every, np.zeros(40)) <= found).all()
+    assert (found <= timed.distances(every, warped)).all()
+    assert (found > 0).all()
+    unknown = np.full(40, np.inf)
+    same = timed.at_any_tempo(unknown, unknown).distances(every, warped)
+    assert same.tolist() == timed.distances(every, warped).tolist()

@@ -9,12 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from app.search.example import guests as guests_module
+from app.search.example.guests import Guests
 from app.search.example.reranking import ShortlistRanking
 from app.search.index import rows as rows_module
 from app.search.index.nearest_ranking import NearestRanking
 from app.search.index.rows import Layout, Rows
 from app.search.ranking.lower_bounds import LowerBounds
-from app.search.ranking.ranking import Page
 from app.store.clips.filter import ClipFilter
 from tests.search.indexed import indexed
 from tests.search.walking import walk, walked
@@ -40,11 +41,26 @@ VECTORS = st.dictionaries(
 )
 
 
-def _near(vectors: Vectors, left_out: str = "") -> NearestRanking:
+def _near(vectors: Vectors, left_out: str = "", query: np.ndarray = QUERY) -> NearestRanking:
     rows = Rows(LAYOUT)
     rows.put([indexed(i, np.array(v, dtype=np.float32)) for i, v in vectors.items()])
     view = rows.view()
-    return NearestRanking(1, view, view.labels.mask(ClipFilter(), [left_out]), QUERY)
+    return NearestRanking(1, view, view.labels.mask(ClipFilter(), [left_out]), query)
+
+
+FEW = 3
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _few_guests() -> Any:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(guests_module, "GUESTS", FEW)
+        yield
+
+
+def _far(vectors: Vectors) -> NearestRanking:
+    """Another view: the same clips by their distance to the far corner."""
+    return _near(vectors, query=np.array([5.0, 2.0, 2.0], dtype=np.float32))
 
 
 def _keys(vectors: Vectors) -> list[tuple[float, str]]:
@@ -86,9 +102,9 @@ def _bounds(ids: np.ndarray, distances: np.ndarray) -> LowerBounds:
     return LowerBounds(ids, finite * shares, lambda rows: distances[rows])
 
 
-def _backwards(shortlist: Page) -> LowerBounds:
+def _backwards(ids: np.ndarray) -> LowerBounds:
     """Ranks anew by something that has nothing to do with the first stage: the id's digits."""
-    return _bounds(shortlist.ids, np.array([100.0 - int(i[1:]) for i in shortlist.ids]))
+    return _bounds(ids, np.array([100.0 - int(i[1:]) for i in ids]))
 
 
 @BRIEF
@@ -124,9 +140,44 @@ CHANGES = st.lists(
 
 
 @BRIEF
-@given(VECTORS, st.integers(1, 9), st.integers(1, 12), CHANGES, st.booleans())
+@given(VECTORS, st.integers(1, 9), st.integers(1, 12))
+def test_guests_join_the_shortlist_and_are_listed_once(
+    vectors: Vectors, size: int, shortlist: int
+) -> None:
+    def ranked(after: Any) -> ShortlistRanking:
+        anchor = after.anchor if after else None
+        near = _near(vectors)
+        return ShortlistRanking(near, _backwards, shortlist, anchor, Guests(near, _far(vectors)))
+
+    order = [clip_id for _, clip_id in _keys(vectors)]
+    guests = _far(vectors).page(None, FEW).ids.tolist()
+    head = {*order[:shortlist], *guests}
+    expected = sorted(head, reverse=True) + [i for i in order if i not in head]
+    pages = walk(ranked, size)
+    assert [str(i) for page in pages for i in page.ids] == expected
+    together = np.concatenate([page.distances for page in pages])
+    assert (np.diff(together) >= 0).all()
+
+
+def test_guests_that_the_first_stage_does_not_rank_are_not_listed() -> None:
+    vectors: Vectors = {f"c{n:02d}": (float(n), 0.0, 0.0) for n in range(6)}
+    near = _near(vectors, left_out="c05")
+    found = ShortlistRanking(near, _backwards, 1, None, Guests(near, _far(vectors)))
+    assert list(found.ids) == ["c04", "c03", "c00", "c01", "c02"]
+
+
+def test_distances_of_clips_are_those_of_the_ranking() -> None:
+    vectors: Vectors = {"a": (0, 0, 0), "b": (1, 0, 0), "c": (1, 2, 2)}
+    near = _near(vectors, left_out="b")
+    asked = np.array(["c", "b", "gone", "a"], dtype=object)
+    assert near.distances_of(asked).tolist() == [3.0, np.inf, np.inf, 0.0]
+    assert _near({}).distances_of(asked).tolist() == [np.inf] * 4
+
+
+@BRIEF
+@given(VECTORS, st.integers(1, 9), st.integers(1, 12), CHANGES, st.sampled_from([0, 1, 2]))
 def test_no_clip_is_missed_or_listed_twice_if_clips_are_added_and_deleted_between_pages(
-    vectors: Vectors, size: int, shortlist: int, changes: list[Any], rerank: bool
+    vectors: Vectors, size: int, shortlist: int, changes: list[Any], stages: int
 ) -> None:
     """Clips that were there all the time are listed once; none is listed twice."""
     now, stayed = dict(vectors), set(vectors)
@@ -142,9 +193,11 @@ def test_no_clip_is_missed_or_listed_twice_if_clips_are_added_and_deleted_betwee
                 if vector is not None:
                     now[clip_id] = vector
         near = _near(now)
-        if not rerank:
+        if not stages:
             return near
-        return ShortlistRanking(near, _backwards, shortlist, after.anchor if after else None)
+        guests = Guests(near, _far(now)) if stages == 2 else None
+        anchor = after.anchor if after else None
+        return ShortlistRanking(near, _backwards, shortlist, anchor, guests)
 
     listed = [str(i) for page in walk(ranked, size) for i in page.ids]
     came_twice = {i for i in listed if listed.count(i) > 1}
@@ -155,14 +208,13 @@ def test_no_clip_is_missed_or_listed_twice_if_clips_are_added_and_deleted_betwee
 def test_a_deleted_clip_of_the_shortlist_is_left_out() -> None:
     vectors: Vectors = {f"c{n:02d}": (float(n), 0.0, 0.0) for n in range(6)}
 
-    def gone(shortlist: Page) -> LowerBounds:
-        away = np.where(shortlist.ids == "c00", np.inf, 0.0)
-        return _bounds(shortlist.ids, shortlist.distances + away)
+    def gone(ids: np.ndarray) -> LowerBounds:
+        return _bounds(ids, np.where(ids == "c00", np.inf, [float(i[1:]) for i in ids]))
 
     found = ShortlistRanking(_near(vectors), gone, 3)
     assert list(found.ids) == ["c01", "c02", "c03", "c04", "c05"]
     everyone_gone = ShortlistRanking(
-        _near(vectors), lambda s: _bounds(s.ids, np.full(len(s.ids), np.inf)), 3
+        _near(vectors), lambda ids: _bounds(ids, np.full(len(ids), np.inf)), 3
     )
     assert list(everyone_gone.ids) == ["c03", "c04", "c05"]
 

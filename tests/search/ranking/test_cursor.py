@@ -20,7 +20,14 @@ QUESTION = digest("clip_1", "fused")
     rank=st.integers(0, 10**9),
     distance=st.floats(0, 1e9),
     clip_id=st.text(max_size=40),
-    anchor=st.none() | st.builds(Anchor, st.floats(0, 1e9), st.just("clip"), st.none()),
+    anchor=st.none()
+    | st.builds(
+        Anchor,
+        st.floats(0, 1e9),
+        st.just("clip"),
+        st.none() | st.floats(0, 1e9),
+        st.none() | st.tuples(st.floats(0, 1e9), st.just("guest")),
+    ),
     scales=st.lists(st.floats(1e-9, 1e9), max_size=40).map(tuple),
 )
 def test_a_cursor_contains_its_position(

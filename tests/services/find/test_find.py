@@ -140,6 +140,7 @@ def test_a_part_of_a_clip_is_described_by_itself(
         ({"end": 1e6}, "end"),
         ({"filter": {"colour": "red"}}, "filter.colour"),
         ({"cursor": "nonsense"}, "cursor"),
+        ({"tempo": "fast"}, "tempo"),
         ({"unit": "cm"}, "unit"),
         ({"content": io.BytesIO(b"x")}, "clip_id"),
     ],
@@ -161,6 +162,7 @@ def test_a_cursor_of_another_query_is_refused(ready_library: Library, clip_of: F
         MotionQuery(QuerySource(walk), cursor=cursor, filter={"task": "walk"}),
         MotionQuery(QuerySource(walk, start=0.5), cursor=cursor),
         MotionQuery(QuerySource(walk), cursor=cursor, include_self=True),
+        MotionQuery(QuerySource(walk), cursor=cursor, tempo="same"),
     ):
         with pytest.raises(BadField, match="cursor"):
             find.find_motion(ready_library, other)

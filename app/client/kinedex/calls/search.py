@@ -31,6 +31,7 @@ def search_motion(
     method: Method | None = None,
     limit: int | None = None,
     scope: Literal["clips", "windows", "segments"] | None = None,
+    tempo: Literal["any", "same"] | None = None,
     include_self: bool | None = None,
     filter: Filter | Mapping[str, Any] | None = None,
     cursor: str | None = None,
@@ -62,6 +63,10 @@ def search_motion(
         clip, by the methods fused, vector and dtw; the query is up to 120 s long. segments:
         motions from one keypose to the next are compared by their vectors; the query is taken as
         one segment. Default: clips.
+    tempo: For method fused with scope clips. any: the motion is also found played faster or
+        slower, cut, or repeated; of two equal hits, the one at the tempo of the query comes
+        first. same: tempo is a part of the motion, and whole clips are compared as they are.
+        Default: any.
     include_self: Whether the query clip may be a hit. A file that is stored already counts as
         its clip. With scope windows and segments: whether parts that overlap the query may be
         hits. Default: False.
@@ -88,6 +93,7 @@ def search_motion(
             method=method,
             limit=limit,
             scope=scope,
+            tempo=tempo,
             include_self=include_self,
             filter=filter,
             cursor=cursor,
@@ -105,6 +111,7 @@ def search_motion(
             method=method,
             limit=limit,
             scope=scope,
+            tempo=tempo,
             include_self=include_self,
             filter=filter,
             cursor=cursor,
