@@ -261,3 +261,18 @@ def test_it_has_no_serious_fault(
                 expect(page.get_by_role("option").first).to_be_visible()
             assert serious_faults(page) == []
             assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+
+def test_a_faster_motion_is_the_same_unless_the_tempo_counts(
+    page: Page, kick: dict[str, Any]
+) -> None:
+    page.goto(f"/search?clip={kick['id']}")
+    expect(hits(page)).to_have_count(STORED - 1)
+    with page.expect_request("**/v1/search/motion") as sent:
+        page.get_by_role("button", name="Same tempo").click()
+    assert sent.value.post_data_json["tempo"] == "same"
+    expect(hits(page)).to_have_count(STORED - 1)
+    page.reload()
+    expect(page.get_by_role("button", name="Same tempo")).to_have_attribute("aria-pressed", "true")
+    page.get_by_label("Method").select_option("dtw")
+    expect(page.get_by_role("button", name="Same tempo")).to_be_hidden()

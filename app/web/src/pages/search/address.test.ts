@@ -44,6 +44,17 @@ it("a clip or a part of it is asked for, also by older addresses", () => {
   expect(askedFor(read("ex=c1@0.5-2"))).toEqual(askedFor(read("clip=c1&start=0.5&end=2")));
 });
 
+it("the tempo counts where the method can tell", () => {
+  const tempo = (address: string): unknown => {
+    const asked = askedFor(read(address));
+    return asked?.kind === "clip" ? asked.body.tempo : null;
+  };
+  expect(tempo("clip=c1")).toBeUndefined();
+  expect(tempo("clip=c1&paced=1")).toBe("same");
+  expect(tempo("clip=c1&paced=1&method=dtw")).toBeUndefined();
+  expect(tempo("clip=c1&paced=1&scope=windows")).toBeUndefined();
+});
+
 it("several parts are asked for together", () => {
   expect(askedFor(read("clip=c1&start=0.5&ex=-c2@1-2&ex=@&q=wave&q=-left&task=walk"))).toEqual({
     kind: "parts",

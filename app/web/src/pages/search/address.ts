@@ -64,6 +64,8 @@ export const SEARCH = {
   pose: number(null, 0, MAX_SECONDS),
   method: choice(Object.keys(METHODS) as Method[], "fused"),
   scope: choice(Object.keys(SCOPES) as Scope[], "clips"),
+  /** Whether a faster or slower motion is another one. */
+  paced: flag(),
   person: list(),
   task: list(),
   word: list(),
@@ -87,6 +89,7 @@ interface Options {
 interface MotionOptions extends Options {
   readonly method: Method;
   readonly scope: Scope;
+  readonly tempo?: "same";
   readonly start?: number;
   readonly end?: number;
 }
@@ -211,8 +214,14 @@ function motion(values: SearchValues): MotionOptions {
   return {
     method: values.method,
     scope: values.scope,
+    ...(values.paced && hasTempo(values) && { tempo: "same" as const }),
     ...common(values),
   };
+}
+
+/** Whether the search can tell tempi apart, or not. */
+export function hasTempo({ method, scope }: Pick<SearchValues, "method" | "scope">): boolean {
+  return method === "fused" && scope === "clips";
 }
 
 function common(values: SearchValues): Options {
