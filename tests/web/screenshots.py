@@ -43,6 +43,7 @@ def _addresses(clip_id: str) -> Iterator[tuple[str, str]]:
     yield "todo-unlabeled", "/todo?kind=unlabeled"
     yield "models-people", "/models?tab=persons"
     yield "models-words", "/models?tab=words"
+    yield "models-signatures", "/models?tab=signatures"
     yield "models-evaluations", "/models?tab=evaluations"
     yield "search-words", "/search?q=wave&q=-left"
     yield "search-clip", f"/search?clip={clip_id}&start=0.5&end=2&scope=windows"
