@@ -22,7 +22,7 @@ CLIP_FIELDS = {
     *("has_audio", "audio_offset", "reanalysis", "path", "metadata"),
 }
 JOB_FIELDS = {
-    *("id", "kind", "state", "progress", "detail"),
+    *("id", "kind", "state", "clip_id", "progress", "detail"),
     *("created_at", "started_at", "finished_at", "result", "error"),
 }
 
@@ -42,6 +42,7 @@ def test_an_upload_is_acknowledged_then_ready(demo_service: Live, take: DemoClip
     assert reply["clip"]["sha256"] == hashlib.sha256(take.content).hexdigest()
     job = demo_service.wait_for_job(reply["job"]["id"])
     assert (job["state"], job["progress"]) == ("succeeded", 1.0)
+    assert job["clip_id"] == reply["clip"]["id"]
     with demo_service.client() as client:
         clip = client.get(f"/v1/clips/{reply['clip']['id']}").json()
         assert clip["state"] == "ready"

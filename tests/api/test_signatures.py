@@ -60,14 +60,15 @@ def test_each_clip_has_its_weights(demo: httpx2.Client, kind: str) -> None:
     found = demo.get(path, params={"eigenmotions": 100, "limit": 1000}).json()
     nearest = 0
     persons = {one["name"]: np.array(one["vector"]) for one in found["persons"]["items"]}
-    for clip in found["clips"]:
+    learned = [clip for clip in found["clips"] if clip["person"] in persons]  # see above
+    for clip in learned:
         assert len(clip["weights"]) == found["eigenmotion_count"]
         own = np.array(clip["signature"])
         far = {name: np.linalg.norm(own - vector) for name, vector in persons.items()}
         nearest += min(far, key=far.__getitem__) == clip["person"]
         assert len(clip["person_point"]) == len(clip["task_point"]) == 2
     # the clips were learned, so a wrong basis or order is what would confuse the persons
-    assert nearest >= 0.8 * len(found["clips"]) > 0
+    assert nearest >= 0.8 * len(learned) > 0
     assert found["total"] == len(found["clips"])
 
 
