@@ -70,10 +70,15 @@ def test_the_map_names_every_clip(demo: httpx2.Client, space: str) -> None:
     for index, item in enumerate(reply["items"]):
         place = [axis[index] for axis in columns["points"]]
         assert place == pytest.approx(item["point"], rel=1e-4)
-        for name, column in (columns["labels"] | columns["metadata"]).items():
+        for name, column in columns["labels"].items():
             code = column["codes"][index]
-            value = column["values"][code] if code >= 0 else None
-            assert value == {**item["metadata"], **item}.get(name), name
+            assert (column["values"][code] if code >= 0 else None) == item[name], name
+        own = {
+            key: column["values"][column["codes"][column["clips"].index(index)]]
+            for key, column in columns["metadata"].items()
+            if index in column["clips"]
+        }
+        assert own == item["metadata"]
         words = columns["words"]
         assert words["values"][words["codes"][index]] == sorted(item["words"])
         for name, values in columns["measures"].items():

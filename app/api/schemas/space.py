@@ -130,10 +130,11 @@ class WordCodes(Outgoing):
 
 
 class MetadataCodes(Outgoing):
-    """The values of a key of the metadata of every clip of a map."""
+    """A key of the metadata, of the clips of a map that have it."""
 
     values: list[str | int | float | bool] = Field(description="The values that occur, each once.")
-    codes: list[int] = Field(description=CODES)
+    clips: list[int] = Field(description="The places of the clips that have the key, ascending.")
+    codes: list[int] = Field(description="For each of these clips the place of its value.")
 
 
 class SpaceColumns(_Drawn):
@@ -177,8 +178,12 @@ class SpaceColumns(_Drawn):
                 name: _or_null(rounded(labels.measured(name)[numbers], DIGITS)) for name in MEASURES
             },
             metadata={
-                key: MetadataCodes(values=list(column.values), codes=column.codes.tolist())
-                for key, column in metadata.items()
+                key: MetadataCodes(
+                    values=list(found.column.values),
+                    clips=found.clips.tolist(),
+                    codes=found.column.codes.tolist(),
+                )
+                for key, found in metadata.items()
             },
         )
 

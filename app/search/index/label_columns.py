@@ -47,12 +47,24 @@ def word_column(labels: LabelView, numbers: IntArray) -> LabelColumn[tuple[str, 
     return _used(codes[numbers], [tuple(sorted(words)) for words in sets])
 
 
-def metadata_columns(
-    labels: LabelView, numbers: IntArray
-) -> Mapping[str, LabelColumn[MetadataValue]]:
-    """The metadata of the clips `numbers` (n,), by key."""
+@dataclass(frozen=True, slots=True)
+class MetadataColumn:
+    """A key of the metadata. Most clips have few of the keys, so only those that have it are named.
+
+    clips: (m,) the places of the clips that have the key, ascending. column: their values, (m,).
+    """
+
+    clips: IntArray
+    column: LabelColumn[MetadataValue]
+
+
+def metadata_columns(labels: LabelView, numbers: IntArray) -> Mapping[str, MetadataColumn]:
+    """The metadata of the clips `numbers` (n,), by key; a place is one in `numbers`."""
     coded = labels.labels.metadata.coded(numbers)
-    return {key: _used(codes, values) for key, (codes, values) in sorted(coded.items())}
+    return {
+        key: MetadataColumn(clips, _used(codes, values))
+        for key, (clips, codes, values) in sorted(coded.items())
+    }
 
 
 def _used(codes: IntArray, labels: Sequence[T | None]) -> LabelColumn[T]:

@@ -43,13 +43,25 @@ class MetadataColumns:
         metadata: IndexedMetadata = self._of_clip.view()[number]
         return metadata
 
-    def coded(self, numbers: IntArray) -> dict[str, tuple[IntArray, tuple[MetadataValue, ...]]]:
-        """For each key, the code (n,) of the value of each of the clips `numbers` (n,), -1 without
-        one, and the values by code. Keys that none of the clips has are left out."""
+    def coded(
+        self, numbers: IntArray
+    ) -> dict[str, tuple[IntArray, IntArray, tuple[MetadataValue, ...]]]:
+        """For each key, what the clips `numbers` (n,) that have it have: their places in `numbers`
+        (m,), ascending, the codes of their values (m,), and the values by code.
+
+        Keys that none of the clips has are left out.
+        """
         count = int(numbers.max(initial=-1)) + 1
-        coded = {key: column.coded(count) for key, column in tuple(self._by_key.items())}
-        chosen = {key: (codes[numbers], values) for key, (codes, values) in coded.items()}
-        return {key: found for key, found in chosen.items() if (found[0] >= 0).any()}
+        place_of = np.full(count, -1, dtype=np.int64)
+        place_of[numbers] = np.arange(len(numbers))
+        found: dict[str, tuple[IntArray, IntArray, tuple[MetadataValue, ...]]] = {}
+        for key, column in tuple(self._by_key.items()):
+            own, codes, values = column.coded(count)
+            places = place_of[own]
+            order = np.argsort(places, kind="stable")[int((places < 0).sum()) :]
+            if len(order):
+                found[key] = places[order], codes[order], values
+        return found
 
     def mask(self, condition: MetadataCondition, count: int) -> BoolArray:
         """(count,) whether each of the first clips meets a condition."""
@@ -84,12 +96,11 @@ class _KeyColumn:
             self._code_of[kind, text] = code
         return code
 
-    def coded(self, count: int) -> tuple[IntArray, tuple[MetadataValue, ...]]:
-        """(count,) the code of the value of each of the first clips, or -1; the values by code."""
-        numbers, codes = self._first(count)
-        found = np.full(count, -1, dtype=np.int64)
-        found[numbers] = codes
-        return found, tuple(from_text(kind, text) for kind, text in tuple(self._code_of))
+    def coded(self, count: int) -> tuple[IntArray, IntArray, tuple[MetadataValue, ...]]:
+        """Of the first `count` clips, the numbers (m,) of those that have the key, the codes (m,)
+        of their values, and the values by code."""
+        values = tuple(from_text(kind, text) for kind, text in tuple(self._code_of))
+        return (*self._first(count), values)
 
     def mark(self, condition: MetadataCondition, mask: BoolArray) -> None:
         """Set the entries of `mask` of the clips whose value passes."""

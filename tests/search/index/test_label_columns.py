@@ -45,16 +45,17 @@ def test_each_clip_has_its_own_values() -> None:
     view = labels.view()
     for name, column in label_columns(view, order).items():
         assert None not in column.values
-        found = [column.values[code] if code != NO_VALUE else None for code in column.codes]
-        assert found == [getattr(CLIPS[number], name) for number in order]
+        labeled = [column.values[code] if code != NO_VALUE else None for code in column.codes]
+        assert labeled == [getattr(CLIPS[number], name) for number in order]
     words = word_column(view, order)
     assert [set(words.values[code]) for code in words.codes] == [CLIPS[n].words for n in order]
     metadata = metadata_columns(view, order)
     assert list(metadata) == ["age", "ok", "trial"]
-    for key, column in metadata.items():
-        for number, code in zip(order, column.codes, strict=True):
-            value = column.values[code] if code != NO_VALUE else None
-            own = dict(CLIPS[number].metadata).get(key)
+    for key, found in metadata.items():
+        has = [place for place, number in enumerate(order) if key in dict(CLIPS[number].metadata)]
+        assert found.clips.tolist() == has
+        for place, code in zip(found.clips, found.column.codes, strict=True):
+            value, own = found.column.values[code], dict(CLIPS[order[place]].metadata)[key]
             assert (value, type(value)) == (own, type(own))
 
 

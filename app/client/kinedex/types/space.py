@@ -56,13 +56,15 @@ class MapPoint(Record):
 
 @dataclass(frozen=True, slots=True)
 class MetadataCodes(Record):
-    """The values of a key of the metadata of every clip of a map.
+    """A key of the metadata, of the clips of a map that have it.
 
     values: The values that occur, each once.
-    codes: For each clip the place of its value in `values`; -1 without one.
+    clips: The places of the clips that have the key, ascending.
+    codes: For each of these clips the place of its value.
     """
 
     values: list[str | int | float | bool]
+    clips: list[int]
     codes: list[int]
 
 

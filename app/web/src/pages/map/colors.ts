@@ -1,6 +1,6 @@
 /** Which color each clip of the map gets from a label, a measure or its metadata. */
 import { MEASURE_NAMES, titleOf } from "$/motion/measures";
-import { labelOf, type Columns } from "./columns";
+import { labelOf, metadataOf, type Columns } from "./columns";
 
 export const LABELS = {
   task: "Task",
@@ -47,7 +47,7 @@ export function coloring(columns: Columns, by: string): Classes | Range {
   if (measured) return ranged(measured);
   if (by === "word") return classed(commonWords(columns));
   const key = by.startsWith(META) ? by.slice(META.length) : "";
-  const { values, codes } = columns.metadata[key] ?? labelOf(columns, by);
+  const { values, codes } = metadataOf(columns, key) ?? labelOf(columns, by);
   const areNumbers = values.length > 0 && values.every((value) => typeof value === "number");
   if (areNumbers) return ranged(codes.map((code) => (values[code] as number | undefined) ?? null));
   const count = columns.clip_ids.length;

@@ -129,7 +129,7 @@ describe("the colors", () => {
   it("are a range of numbers, of measures and of metadata", () => {
     const some = columns({
       measures: { speed: [1, null, 3] },
-      metadata: { age: { values: [20, 40], codes: [0, 1, -1] } },
+      metadata: { age: { values: [20, 40], clips: [0, 1], codes: [0, 1] } },
     });
     expect(choices(some).map(([name]) => name)).toContain("meta.age");
     const found = coloring(some, "meta.age");
@@ -154,26 +154,26 @@ describe("the columns", () => {
     labels: { task: { values: ["walk"], codes: [-1, 0, 0] } },
     words: { values: [["slow"], []], codes: [1, 0, 1] },
     measures: { speed: [1, 2, null] },
-    metadata: { age: { values: [20], codes: [-1, -1, 0] } },
+    metadata: { age: { values: [20], clips: [2], codes: [0] } },
   });
 
   it("are points, and what is known of a clip", () => {
     expect([...pointsOf(some)]).toEqual([0, 3, 1, 4, 2, 5]);
-    expect(labeled(some, 1)).toEqual({
+    expect(labeled(some, [1])[0]).toEqual({
       id: "b",
       person: null,
       task: "walk",
       words: ["slow"],
       metadata: {},
     });
-    expect(labeled(some, 2).metadata).toEqual({ age: 20 });
+    expect(labeled(some, [2])[0]?.metadata).toEqual({ age: 20 });
   });
 
   it("leave out clips that are hidden", () => {
     const left = without(some, new Set(["b"]));
     expect(left.clip_ids).toEqual(["a", "c"]);
     expect([...pointsOf(left)]).toEqual([0, 3, 2, 5]);
-    expect(labeled(left, 1)).toEqual(labeled(some, 2));
+    expect(labeled(left, [1])).toEqual(labeled(some, [2]));
     expect(left.measures["speed"]).toEqual([1, null]);
   });
 });
