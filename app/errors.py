@@ -119,6 +119,12 @@ class NotFound(KinedexError):
     code = "not_found"
 
 
+class PageNotFound(NotFound):
+    """There is no such page: the cursor is from another list or query."""
+
+    code = "page_not_found"
+
+
 class ClipNotFound(NotFound):
     """There is no clip with this id."""
 

@@ -11,6 +11,7 @@ from fastapi import FastAPI
 from fastapi.concurrency import run_in_threadpool
 from fastapi_offline import FastAPIOffline
 
+from app.api.description import describe
 from app.api.docs import STATIC, install_docs
 from app.api.examples import example_values
 from app.api.failures.handlers import install_handlers
@@ -26,7 +27,6 @@ from app.api.guard.sessions import Sessions
 from app.api.guard.slow_bodies import SlowBodies
 from app.api.loading import Loading
 from app.api.metrics import install_metrics
-from app.api.openapi import describe
 from app.api.routes import (
     alignment,
     clip_views,

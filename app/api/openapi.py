@@ -5,24 +5,19 @@ These are the problems (RFC 9457), and the bodies that routes read without FastA
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Annotated, Any
 
-from fastapi import FastAPI, Path
-from fastapi.openapi.utils import get_openapi
+from fastapi import Path
 from pydantic import BaseModel
-from pydantic.json_schema import models_json_schema
 
 from app import errors
 from app.api.bodies import MAX_FIELD_BYTES
 from app.api.failures import problems
 from app.api.failures.problems import problem_of
-from app.api.guard.idempotency import HEADER, takes_key
-from app.api.schemas.problem import Problem
 from app.kinedex_error import KinedexError, Place
 
-_REF = "#/components/schemas/{model}"
+REF = "#/components/schemas/{model}"
 _DESCRIPTIONS = {
     400: "The body does not match its Content-Type",
     401: "An API key is needed",
@@ -73,22 +68,13 @@ _CONFLICTS: dict[type[KinedexError], KinedexError] = {
     }.items()
 }
 """The failures with the status 409, as examples. A route names those that it can answer."""
-_OF_A_KEY = (errors.CallInProgress, errors.CallOvertaken, errors.AnswerLost)
+OF_A_KEY = (errors.CallInProgress, errors.CallOvertaken, errors.AnswerLost)
 """Conflicts of every call that takes an Idempotency-Key."""
 BINARY = {"schema": {"type": "string", "format": "binary"}}
 """Bytes as the content of an answer. Of an answer without a schema, generated clients lose them."""
 _EVERYWHERE = (401, 403, 422, 500, 503)
 _WITH_A_BODY = (408, 413)
 """Statuses of every call that has a body. A route with a body lists 413."""
-_IDEMPOTENCY_KEY = {
-    "name": HEADER,
-    "in": "header",
-    "required": False,
-    "schema": {"type": "string", "minLength": 1, "maxLength": 255},
-    "description": "A random text that you choose for this call. If you send the call again with "
-    "the same text within 24 hours, it takes no effect again and returns the first answer. With "
-    "another body it is refused (422); while the first call runs, it answers 409.",
-}
 _REQUEST_ID = {
     "name": "X-Request-Id",
     "in": "header",
@@ -123,21 +109,23 @@ def refusals(*answers: int | type[KinedexError]) -> dict[int | str, dict[str, An
     conflicts = [one for one in answers if not isinstance(one, int)]
     with_a_body = _WITH_A_BODY if 413 in statuses else ()
     found: dict[int | str, dict[str, Any]] = {
-        status: _refusal(status, {"example": problem_of(_EXAMPLES[status])})
+        status: refusal(status, {"example": problem_of(_EXAMPLES[status])})
         for status in {*statuses, *_EVERYWHERE, *with_a_body}
     }
     if conflicts:
-        found[409] = _refusal(409, {"examples": _examples_of(conflicts)})
+        found[409] = refusal(409, {"examples": examples_of(conflicts)})
     return dict(sorted(found.items()))
 
 
-def _refusal(status: int, examples: Mapping[str, Any]) -> dict[str, Any]:
-    schema = {"$ref": _REF.format(model="Problem")}
+def refusal(status: int, examples: Mapping[str, Any]) -> dict[str, Any]:
+    """The description of one status, whose answer is a problem."""
+    schema = {"$ref": REF.format(model="Problem")}
     content = {problems.MEDIA_TYPE: {"schema": schema, **examples}}
     return {"description": _DESCRIPTIONS[status], "content": content}
 
 
-def _examples_of(conflicts: Iterable[type[KinedexError]]) -> dict[str, Any]:
+def examples_of(conflicts: Iterable[type[KinedexError]]) -> dict[str, Any]:
+    """Examples of problems with the status 409, by code."""
     return {kind.code: {"value": problem_of(_CONFLICTS[kind])} for kind in conflicts}
 
 
@@ -161,7 +149,7 @@ def body(
     content: dict[str, Any] = {}
     if model is not None:
         content["application/json"] = {
-            "schema": {"$ref": _REF.format(model=model.__name__)},
+            "schema": {"$ref": REF.format(model=model.__name__)},
             "examples": {name: {"value": value} for name, value in (examples or {}).items()},
         }
     if form is not None:
@@ -175,7 +163,7 @@ def body(
 def _form_schema(
     form: type[BaseModel], files: Mapping[str, str], needed: Sequence[str]
 ) -> dict[str, Any]:
-    schema = form.model_json_schema(ref_template=_REF)
+    schema = form.model_json_schema(ref_template=REF)
     schema.pop("$defs", None)  # the definitions are in the components of the description
     uploads = {
         name: {"type": "string", "format": "binary", "description": text}
@@ -186,6 +174,16 @@ def _form_schema(
     if needed:
         schema["required"] = list(needed)
     return schema
+
+
+def without_null(field: dict[str, Any]) -> dict[str, Any]:
+    """The schema of a field or parameter that is left out if it has no value."""
+    if "anyOf" not in field:
+        return field
+    kinds = [kind for kind in field["anyOf"] if kind != {"type": "null"}]
+    rest = {name: value for name, value in field.items() if name != "anyOf"}
+    alone = {**kinds[0], **rest} if len(kinds) == 1 else {**rest, "anyOf": kinds}
+    return {name: value for name, value in alone.items() if value is not None}
 
 
 _CONTENT = {"contentMediaType", "contentSchema"}
@@ -200,81 +198,8 @@ def _text_field(field: dict[str, Any]) -> dict[str, Any]:
     out is an empty text, also if the field is a number: else Swagger UI invents a value and sends
     it.
     """
-    kinds = [kind for kind in field.get("anyOf", ()) if kind != {"type": "null"}]
-    if len(kinds) == 1:
-        field = {**kinds[0], **field}
-        del field["anyOf"]
-        field = {name: value for name, value in field.items() if value is not None}
+    field = without_null(field)
     kept = {name: value for name, value in field.items() if name not in _CONTENT}
     if kept.get("type") == "string" and not _BOUNDS & kept.keys():
         kept["maxLength"] = MAX_FIELD_BYTES
     return kept if {"examples", "default"} & kept.keys() else {**kept, "examples": [""]}
-
-
-def describe(
-    app: FastAPI, bodies: Sequence[type[BaseModel]], ids: Callable[[], Mapping[str, str]]
-) -> None:
-    """Add the schemas of `bodies` and of problems to `app.openapi()`. It is built once.
-
-    ids: returns the values that replace CLIP_ID, PERSON and so on in the examples, by placeholder
-    (`app.api.examples`). With real ids, the examples can be run.
-    """
-
-    def openapi() -> dict[str, Any]:
-        if app.openapi_schema is None:
-            app.openapi_schema = _build(app, bodies)
-        return _filled(app.openapi_schema, ids())
-
-    app.openapi = openapi  # type: ignore[method-assign]  # FastAPI's documented way
-
-
-def _filled(description: dict[str, Any], ids: Mapping[str, str]) -> dict[str, Any]:
-    if not ids:
-        return description
-    text = json.dumps(description)
-    for placeholder, identity in ids.items():
-        text = text.replace(json.dumps(placeholder), json.dumps(identity))
-    filled: dict[str, Any] = json.loads(text)
-    return filled
-
-
-def _build(app: FastAPI, bodies: Sequence[type[BaseModel]]) -> dict[str, Any]:
-    description = get_openapi(
-        title=app.title,
-        version=app.version,
-        summary=app.summary,
-        description=app.description,
-        routes=app.routes,
-        tags=app.openapi_tags,
-        license_info=app.license_info,
-    )
-    extra_models: list[type[BaseModel]] = [*bodies, Problem]
-    _, extra = models_json_schema(
-        [(model, "validation") for model in extra_models], ref_template=_REF
-    )
-    schemas = description.setdefault("components", {}).setdefault("schemas", {})
-    schemas.update(extra.get("$defs", {}))
-    _add_idempotency_keys(description["paths"])
-    _describe_events_as_text(description["paths"])
-    return description
-
-
-def _describe_events_as_text(paths: dict[str, Any]) -> None:
-    """FastAPI describes events by `itemSchema` of OpenAPI 3.2; openapi-generator refuses it."""
-    for item in paths.values():
-        for operation in item.values():
-            for response in operation["responses"].values():
-                events = response.get("content", {}).get("text/event-stream")
-                if events is not None:
-                    events.clear()
-                    events["schema"] = {"type": "string"}
-
-
-def _add_idempotency_keys(paths: dict[str, Any]) -> None:
-    for path, item in paths.items():
-        for method, operation in item.items():
-            if takes_key(method, path):
-                operation.setdefault("parameters", []).append(_IDEMPOTENCY_KEY)
-                refusal = _refusal(409, {"examples": {}})
-                found = operation["responses"].setdefault("409", refusal)
-                found["content"][problems.MEDIA_TYPE]["examples"] |= _examples_of(_OF_A_KEY)

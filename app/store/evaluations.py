@@ -92,7 +92,7 @@ def before(tx: Tx, record: EvaluationRecord) -> EvaluationRecord | None:
 def list_page(
     tx: Tx, *, kind: str | None = None, limit: int = 50, cursor: str | None = None
 ) -> Page[EvaluationRecord]:
-    """One page of at most `limit` results, newest first; raises BadField at "cursor"."""
+    """One page of at most `limit` results, newest first; raises PageNotFound at "cursor"."""
     query = _of_kind(select(*_SHOWN), kind)
     if cursor is not None:
         position = read_cursor(cursor, NEWEST_FIRST, datetime)

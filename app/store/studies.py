@@ -94,7 +94,7 @@ def get_pair(tx: Tx, pair_id: str) -> PairRecord:
 
 
 def list_pairs(tx: Tx, *, limit: int = 50, cursor: str | None = None) -> Page[PairRecord]:
-    """One page of at most `limit` pairs, newest first; raises BadField at "cursor"."""
+    """One page of at most `limit` pairs, newest first; raises PageNotFound at "cursor"."""
     created, row_id = study_pairs.c.created_at, study_pairs.c.id
     query = select(study_pairs)
     if cursor is not None:

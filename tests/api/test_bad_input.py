@@ -205,18 +205,22 @@ def test_the_filter_of_a_form_is_json(idle: httpx2.Client) -> None:
     [
         ("/v1/clips?limit=0", "query.limit"),
         ("/v1/clips?limit=1001", "query.limit"),
-        ("/v1/clips?cursor=zzz", "query.cursor"),
-        ("/v1/clips?cursor=%00", "query.cursor"),
         ("/v1/clips?sort=colour", "query.sort"),
         ("/v1/clips?state=lost", "query.state"),
         ("/v1/clips?min_duration=nan", "query.min_duration"),
         ("/v1/clips?colour=red", "query.colour"),
-        ("/v1/jobs?cursor=e30", "query.cursor"),
         ("/v1/jobs?limit=-1", "query.limit"),
     ],
 )
 def test_queries(idle: httpx2.Client, path: str, location: str) -> None:
     assert_problem(idle.get(path), 422, "bad_field", location)
+
+
+@pytest.mark.parametrize(
+    "path", ["/v1/clips?cursor=zzz", "/v1/clips?cursor=%00", "/v1/jobs?cursor=e30"]
+)
+def test_a_page_that_no_list_has(idle: httpx2.Client, path: str) -> None:
+    assert_problem(idle.get(path), 404, "page_not_found", "query.cursor")
 
 
 @pytest.mark.parametrize(

@@ -126,7 +126,7 @@ def test_labels_are_paged(demo: httpx2.Client) -> None:
         assert first["items"] + rest["items"] == every["items"]
         assert rest["next"] is None
     answer = demo.get("/v1/tasks", params={"cursor": "nonsense"})
-    assert_problem(answer, 422, "bad_field", "query.cursor")
+    assert_problem(answer, 404, "page_not_found", "query.cursor")
 
 
 def test_a_list_sorted_by_long_names_goes_on(idle_service: Live) -> None:

@@ -162,7 +162,7 @@ def test_a_cursor_of_another_question(demo: httpx2.Client, walk: dict[str, Any])
     cursor = _search(demo, clip_id=walk["id"], limit=1)["next"]
     body = {"clip_id": walk["id"], "method": "vector", "cursor": cursor}
     answer = demo.post("/v1/search/motion", json=body)
-    assert_problem(answer, 422, "bad_field", "body.cursor")
+    assert_problem(answer, 404, "page_not_found", "body.cursor")
 
 
 @pytest.mark.parametrize("mode", ["default", "cca"])

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.errors import BadField, EvaluationNotFound
+from app.errors import EvaluationNotFound, PageNotFound
 from app.store import evaluations
 from app.store.evaluations import EvaluationRecord, NewEvaluation
 from app.store.store import Store
@@ -48,7 +48,7 @@ def test_pages_are_newest_first_and_of_one_kind(store: Store) -> None:
 
 
 def test_a_bad_cursor_is_refused(store: Store) -> None:
-    with store.read() as tx, pytest.raises(BadField):
+    with store.read() as tx, pytest.raises(PageNotFound):
         evaluations.list_page(tx, cursor="nonsense")
 
 

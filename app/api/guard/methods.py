@@ -12,9 +12,9 @@ from app.api.failures.problems import UnknownMethod, problem_of
 from app.api.failures.response import respond
 
 METHODS = frozenset(
-    {"CONNECT", "DELETE", "GET", "HEAD", "OPTIONS", "PATCH", "POST", "PUT", "TRACE"}
+    {"CONNECT", "DELETE", "GET", "HEAD", "OPTIONS", "PATCH", "POST", "PUT", "QUERY", "TRACE"}
 )
-"""The methods of RFC 9110 and RFC 5789."""
+"""The methods of RFC 9110, of RFC 5789 (PATCH), and QUERY of the IETF's HTTP working group."""
 
 
 class KnownMethods:

@@ -84,7 +84,7 @@ def _recording(uploads: dict[str, UploadFile]) -> NewRecording | None:
     return None if sent is None else NewRecording(sent.file, sent.filename or "audio")
 
 
-@router.get("", dependencies=[reads, quick], response_model=ClipList, responses=refusals())
+@router.get("", dependencies=[reads, quick], response_model=ClipList, responses=refusals(404))
 def list_clips(lib: Lib, query: Annotated[ClipQuery, Query()]) -> ClipList | Response:
     """List the clips that pass every filter. Repeat a label parameter to accept several values.
 

@@ -40,7 +40,7 @@ def start_evaluation(lib: Lib, new: NewEvaluation) -> JobStarted:
     return JobStarted(job=Job.model_validate(job))
 
 
-@router.get("", dependencies=[reads, quick], responses=refusals())
+@router.get("", dependencies=[reads, quick], responses=refusals(404))
 def list_evaluations(lib: Lib, query: Annotated[EvaluationQuery, Query()]) -> EvaluationList:
     """The kept evaluations with their main figures, the newest first."""
     page = evaluations.list_evaluations(lib, query.kind, query.limit, query.cursor)

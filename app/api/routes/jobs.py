@@ -25,7 +25,7 @@ POLL_SECONDS = 0.25
 """Time between two reads of a job for a client that follows it."""
 
 
-@router.get("", dependencies=[reads, quick], responses=refusals())
+@router.get("", dependencies=[reads, quick], responses=refusals(404))
 def list_jobs(lib: Lib, query: Annotated[JobQuery, Query()]) -> JobList:
     """Jobs, the newest first."""
     page = jobs.list_jobs(lib, query.kind, query.state, query.limit, query.cursor)

@@ -6,11 +6,12 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Query
 from fastapi.responses import StreamingResponse
-from starlette.convertors import PathConvertor, register_url_convertor
 
 from app.api.deps import Lib, reads, writes
 from app.api.guard.admission import changes, quick
 from app.api.openapi import refusals
+from app.api.path_parameters import register_label
+from app.api.schemas.base import PRINTABLE
 from app.api.schemas.filters import Filter
 from app.api.schemas.labels import (
     FolderList,
@@ -32,19 +33,8 @@ DEFAULT_WORDS, DEFAULT_COMPLETIONS = 1000, 10
 """Limits if the client sends none."""
 
 
-class LabelConvertor(PathConvertor):
-    """The rest of a path as one label. A label may hold slashes, also at its end.
-
-    Starlette's `path` refuses line ends and accepts an empty rest. Here, a line end is part of the
-    label, so that the check of labels can refuse it. An empty rest is refused, because it is the
-    path of the list.
-    """
-
-    regex = "(?s:.+)"
-
-
-register_url_convertor("label", LabelConvertor())
-router = APIRouter(prefix="/v1", tags=["labels"], dependencies=[reads], responses=refusals())
+LABEL = register_label()
+router = APIRouter(prefix="/v1", tags=["labels"], dependencies=[reads], responses=refusals(404))
 
 
 @router.get("/persons", dependencies=[quick])
@@ -55,14 +45,20 @@ def list_persons(lib: Lib, query: Annotated[LabelPage, Query()]) -> NamedCounts:
 
 
 @router.delete(
-    "/persons/{name:label}",
+    f"/persons/{{name:{LABEL}}}",
     status_code=204,
     dependencies=[writes, changes],
-    responses=refusals(404),
 )
 def forget_person(
     lib: Lib,
-    name: Annotated[str, Path(max_length=300, openapi_examples={"a person": {"value": "PERSON"}})],
+    name: Annotated[
+        str,
+        Path(
+            max_length=300,
+            json_schema_extra=PRINTABLE,
+            openapi_examples={"a person": {"value": "PERSON"}},
+        ),
+    ],
 ) -> None:
     """Remove a person from all labels, and delete every model that holds the person.
 

@@ -10,6 +10,7 @@ from app.api.bodies import require_json
 from app.api.deps import Lib, reads, writes
 from app.api.guard.admission import changes, heavy, quick
 from app.api.openapi import ModelId, SignatureModelId, refusals
+from app.api.path_parameters import register_other_than
 from app.api.routes.clip_views import OCTET_ANSWER
 from app.api.schemas.base import Limit
 from app.api.schemas.clips import Clip
@@ -40,6 +41,7 @@ EigenmotionNumber = Annotated[
     int, Path(ge=1, le=MAX_EIGENMOTIONS, openapi_examples={"the first": {"value": 1}})
 ]
 
+MODEL = register_other_than("model", "confusion", "fit")
 router = APIRouter(prefix="/v1/models", tags=["models"])
 
 
@@ -53,7 +55,7 @@ def list_models(lib: Lib) -> ModelList:
 
 
 @router.patch(
-    "/{model_id}",
+    f"/{{model_id:{MODEL}}}",
     dependencies=[writes, Depends(require_json), changes],
     responses=refusals(400, 404, 413, 415),
 )

@@ -98,7 +98,7 @@ def search_motion(
     "/words",
     dependencies=[reads, Depends(require_json), heavy],
     response_model=WordHits,
-    responses=refusals(400, 413, 415, ModelNotFitted, NotEnoughLabels),
+    responses=refusals(400, 404, 413, 415, ModelNotFitted, NotEnoughLabels),
 )
 def search_words(lib: Lib, sent: WordSearch, fields: ChosenFields = None) -> WordHits | Response:
     """Find motions for words, phrases or sentences. The most probable motion comes first.

@@ -10,6 +10,7 @@ from app.api.bodies import require_json
 from app.api.deps import Lib, reads, writes
 from app.api.guard.admission import changes, heavy, quick
 from app.api.openapi import PairId, refusals
+from app.api.path_parameters import register_other_than
 from app.api.routes.clip_views import OCTET_ANSWER
 from app.api.routes.low_dimensional import SVG_ANSWER
 from app.api.schemas.studies import (
@@ -31,6 +32,7 @@ from app.services.views import studies
 from app.services.views.studies import Side
 from app.store.database.paging import Page
 
+SIDE = register_other_than("side", "animation.svg", "votes")
 router = APIRouter(tags=["studies"])
 
 _BODY = (400, 404, 413, 415)
@@ -52,7 +54,7 @@ def draw_pair(lib: Lib, new: NewPair) -> Pair:
     return Pair.of(studies.draw_pair(lib, new.clip_id, new.dimensions, new.model_clips))
 
 
-@router.get(PAIRS, dependencies=[reads, quick], responses=refusals())
+@router.get(PAIRS, dependencies=[reads, quick], responses=refusals(404))
 def list_pairs(lib: Lib, query: Annotated[PairsQuery, Query()]) -> PairList:
     """Pairs, the newest first."""
     page = studies.list_pairs(lib, query.limit, query.cursor)
@@ -86,7 +88,7 @@ def get_pair_animation(lib: Lib, pair_id: PairId) -> Response:
 
 
 @router.get(
-    PAIRS + "/{pair_id}/{side}",
+    f"{PAIRS}/{{pair_id}}/{{side:{SIDE}}}",
     dependencies=[reads, heavy],
     response_model=Motion,
     responses={200: OCTET_ANSWER, **refusals(404, ClipNotReady)},

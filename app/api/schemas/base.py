@@ -69,6 +69,13 @@ class Paged(Outgoing):
     )
 
 
+def not_null(schema: dict[str, Any]) -> None:
+    """`json_schema_extra` of a field that is left out if it has no value, and not sent as null."""
+    (kind,) = (one for one in schema.pop("anyOf") if one != {"type": "null"})
+    schema.pop("default")
+    schema.update(kind)
+
+
 def _as_list(value: Any) -> Any:
     return [value] if isinstance(value, str) else value
 
@@ -90,7 +97,14 @@ def _without_control(value: str) -> str:
     return value
 
 
-PartOfName = Annotated[str, Field(max_length=300), AfterValidator(_without_control)]
+_CONTROL = r"\u0000-\u001f\u007f-\u009f"
+PRINTABLE: dict[str, Any] = {"pattern": f"^[^{_CONTROL}]*$"}
+"""The schema of a text without control characters. The check itself has a clearer message."""
+NAMED: dict[str, Any] = {"pattern": rf"^[^{_CONTROL}]*[^\s{_CONTROL}][^{_CONTROL}]*$"}
+"""The schema of such a text that is also more than spaces."""
+PartOfName = Annotated[
+    str, Field(max_length=300, json_schema_extra=PRINTABLE), AfterValidator(_without_control)
+]
 """Part of a name, without control characters: SQLite's LIKE ends at a NUL and would match all."""
 
 _Filtered = Annotated[str, Field(min_length=1, max_length=MAX_LABEL_LENGTH)]
@@ -100,10 +114,14 @@ AnyOf = Annotated[
 ]
 """A label, or a list of accepted labels."""
 
-Label = Annotated[str, Field(max_length=fields.MAX_TEXT)]
+Label = Annotated[str, Field(max_length=fields.MAX_TEXT, json_schema_extra=PRINTABLE)]
 """A name or label of a clip. The service checks further rules (`app.services.clip_fields`)."""
 
-Path = Annotated[str, Field(max_length=fields.MAX_PATH), AfterValidator(_without_control)]
+Path = Annotated[
+    str,
+    Field(max_length=fields.MAX_PATH, json_schema_extra=PRINTABLE),
+    AfterValidator(_without_control),
+]
 """A path of a file or folder, with / between its parts."""
 
 _MetadataKey = Annotated[str, Field(min_length=1, max_length=clip_fields.MAX_META_KEY)]

@@ -10,6 +10,7 @@ from pydantic import BeforeValidator, ConfigDict, Field, Json
 
 from app.api.schemas.base import (
     ENERGY,
+    NAMED,
     SPEED,
     TEMPO,
     TRAVEL,
@@ -28,11 +29,13 @@ from app.api.schemas.base import (
     Roles,
     Seconds,
     Words,
+    not_null,
 )
 from app.api.schemas.clip_remarks import ClipWarning, Difference
 from app.api.schemas.filters import Filter
 from app.api.schemas.jobs import Job
 from app.api.schemas.problem import StoredProblem
+from app.motion.canonical.units import METERS_PER_UNIT
 from app.motion.skeleton.recording import FRAME_RATES
 from app.search.index.filters import parse_filter
 from app.services.fields import MAX_KEYPOSES, MAX_OFFSET, TEMPI
@@ -77,10 +80,13 @@ FrameRate = Annotated[
 FileFrameRate = Annotated[
     FrameRate | None, Field(description="It replaces the frame rate that the file declares.")
 ]
+_UNIT = rf"^({'|'.join(METERS_PER_UNIT)}|0?\.0{{0,5}}[1-9][0-9]*|[1-9][0-9]{{0,2}}(\.[0-9]+)?)$"
+"""A name or a number. Numbers with an exponent are read too."""
 Unit = Annotated[
     str | None,
     Field(
         max_length=30,
+        json_schema_extra={"pattern": _UNIT},
         description="m, dm, cm, mm, in, ft, cmu (unit of the CMU files), or meters per unit.",
     ),
 ]
@@ -231,7 +237,9 @@ class ClipForm(Incoming):
 class ClipPatch(Incoming):
     """Corrections. Only the sent fields change. null deletes a value (not for `name`)."""
 
-    name: Label | None = None
+    name: Annotated[Label, Field(json_schema_extra=NAMED)] | None = Field(
+        None, json_schema_extra=not_null
+    )
     person: Label | None = None
     task: Label | None = None
     words: Words | None = None

@@ -8,7 +8,7 @@ from pydantic import Field, Json
 
 from app.api.schemas.base import FormWords, Incoming, Label, MetadataChanges
 from app.services.imports.options import ImportOptions
-from app.services.imports.path_pattern import MAX_PATTERN
+from app.services.imports.path_pattern import MAX_PATTERN, PATTERN_OF_PATHS
 
 _FOR_ALL = "For all files whose rows in a manifest and whose paths give none."
 
@@ -27,6 +27,7 @@ class ImportForm(Incoming):
     labels: str | None = Field(
         None,
         max_length=MAX_PATTERN,
+        json_schema_extra={"pattern": PATTERN_OF_PATHS},
         description="Labels from the paths of files: a pattern like `{person}/{task}/{take}.bvh`."
         " A name in braces that is no label becomes metadata; `*` is any name, `**` any folders.",
         examples=["{person}/{task}/{take}.bvh"],

@@ -6,7 +6,16 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, Json
 
-from app.api.schemas.base import ROUNDED, Cursor, Incoming, Limit, Outgoing, Probability, Seconds
+from app.api.schemas.base import (
+    PRINTABLE,
+    ROUNDED,
+    Cursor,
+    Incoming,
+    Limit,
+    Outgoing,
+    Probability,
+    Seconds,
+)
 from app.api.schemas.clips import Clip
 from app.api.schemas.filters import Filter
 from app.api.schemas.query_source import ClipId, QueryFields, QueryForm
@@ -87,10 +96,13 @@ class MotionSearchForm(_MotionOptions, QueryForm):
     filter: Json[Filter] | None = Field(None, description='JSON, as {"task": ["walk", "run"]}.')
 
 
+_Word = Annotated[str, Field(min_length=1, max_length=300, json_schema_extra=PRINTABLE)]
+
+
 class WordSearch(Incoming):
     """Find motions for words."""
 
-    words: list[Annotated[str, Field(min_length=1, max_length=300)]] = Field(
+    words: list[_Word] = Field(
         min_length=1,
         max_length=100,
         description=(

@@ -6,7 +6,7 @@ from typing import Annotated, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
-from app.api.schemas.base import Incoming, Label, Outgoing
+from app.api.schemas.base import Incoming, Label, Outgoing, not_null
 from app.api.schemas.clips import Clip
 from app.api.schemas.jobs import Job
 from app.api.schemas.query_source import ClipId
@@ -20,9 +20,12 @@ class Synthesize(Incoming):
     """The requested motion. Exactly one of `person` and `clip_ids` is needed."""
 
     task: Annotated[Label, Field(min_length=1, description="The task of the motion.")]
-    person: Label | None = Field(None, description="A person of the library.")
+    person: Label | None = Field(
+        None, description="A person of the library.", json_schema_extra=not_null
+    )
     clip_ids: Annotated[list[ClipId], Field(min_length=1, max_length=MAX_CLIPS)] | None = Field(
         None,
+        json_schema_extra=not_null,
         description="Clips of one person, labeled with their tasks. The library may know the person"
         " or not: the motion is made as if it had no other clips of that person.",
     )
@@ -38,10 +41,14 @@ class Synthesize(Incoming):
 
     model_config = ConfigDict(
         json_schema_extra={
+            # Not `oneOf`: generators of clients take that for several types of the whole body.
+            "if": {"not": {"required": ["person"]}},
+            "then": {"required": ["clip_ids"]},
+            "else": {"not": {"required": ["clip_ids"]}},
             "examples": [
                 {"person": "PERSON", "task": "TASK"},
                 {"clip_ids": ["CLIP_ID"], "task": "TASK", "store": True},
-            ]
+            ],
         }
     )
 

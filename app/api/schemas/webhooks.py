@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import datetime
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, ConfigDict, Field
+from pydantic import BeforeValidator, ConfigDict, Field, StrictBool
 
 from app.api.schemas.base import Incoming, Outgoing
 from app.services.webhooks.registry import MAX_URL_LENGTH, MAX_WEBHOOKS
@@ -14,7 +14,7 @@ from app.store.jobs.endings import EVENTS
 MAX_SECRET_LENGTH = 100
 _NAMES = ", ".join(f"`{event}`" for event in EVENTS)
 Events = Annotated[
-    list[Annotated[str, Field(max_length=50)]],
+    list[Annotated[str, Field(max_length=50, json_schema_extra={"enum": list(EVENTS)})]],
     Field(
         max_length=len(EVENTS),
         description=f"Events that are sent: {_NAMES}. An empty list: all events.",
@@ -40,7 +40,7 @@ class NewWebhook(Incoming):
         max_length=MAX_SECRET_LENGTH,
         description="`whsec_` and 24 to 64 random bytes in base64. Default: a new one.",
     )
-    enabled: bool = Field(True, description="False: nothing is sent until it is switched on.")
+    enabled: StrictBool = Field(True, description="False: nothing is sent until it is switched on.")
 
     model_config = ConfigDict(
         json_schema_extra={
@@ -59,7 +59,7 @@ class WebhookPatch(Incoming):
     """Changes of a webhook. Only the sent fields change."""
 
     events: Annotated[Events, BeforeValidator(_none_as_no_list)] | None = None
-    enabled: bool | None = Field(
+    enabled: StrictBool | None = Field(
         None, description="true also tries a failing webhook again at once."
     )
 

@@ -13,7 +13,7 @@ import hashlib
 import json
 from dataclasses import dataclass
 
-from app.errors import BadField
+from app.errors import PageNotFound
 from app.kinedex_error import Place
 from app.store.database import cursor_codec
 from app.store.database.cursor_codec import as_count, as_number, as_text
@@ -73,7 +73,7 @@ def encode(position: Position, query: str) -> str:
 def decode(cursor: str, query: str) -> Position:
     """The position in a cursor; query: the digest of the query.
 
-    Raises BadField if `cursor` is not a cursor, or the cursor of another query.
+    Raises PageNotFound if `cursor` is not a cursor, or the cursor of another query.
     """
     try:
         own_query, rank, distance, clip_id, *rest = cursor_codec.decode(cursor)
@@ -110,5 +110,5 @@ def _scales(values: list[object]) -> tuple[float, ...]:
     return scales
 
 
-def _refused(message: str) -> BadField:
-    return BadField("The cursor cannot be used.", places=[Place("cursor", message)])
+def _refused(message: str) -> PageNotFound:
+    return PageNotFound(places=[Place("cursor", message)])

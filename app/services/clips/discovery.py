@@ -16,7 +16,7 @@ _SORT = "folder"
 
 
 def metadata(lib: Library, limit: int, cursor: str | None = None) -> Page[MetadataKey]:
-    """One page of the keys of the metadata, by name. Raises BadField for a bad cursor."""
+    """One page of the keys of the metadata, by name. Raises PageNotFound for a bad cursor."""
     with lib.store.read() as tx:
         return metadata_keys.page(tx, MAX_VALUES, limit, cursor)
 
@@ -26,7 +26,7 @@ def folders(
 ) -> Page[Folder]:
     """One page of the folders directly in a folder (None: the root), by name.
 
-    Raises BadField for a bad cursor or path.
+    Raises PageNotFound for a bad cursor, BadField for a bad path.
     """
     after = None if cursor is None else str(read_cursor(cursor, _SORT, str).value)
     with lib.store.read() as tx:

@@ -37,7 +37,10 @@ def list_jobs(
     limit: int = 50,
     cursor: str | None = None,
 ) -> Page[JobRecord]:
-    """One page of jobs, newest first, without imports' files. Raises BadField for a bad cursor."""
+    """One page of jobs, newest first, without imports' files.
+
+    Raises PageNotFound for a bad cursor.
+    """
     with lib.store.read() as tx:
         page = stored.list_jobs(tx, kind=kind, state=state, limit=limit, cursor=cursor)
         return page.counted(stored.total(tx, kind=kind, state=state))
@@ -52,7 +55,7 @@ def list_files(
 ) -> Page[ImportedFile]:
     """One page of an import's files, by path; empty for other jobs.
 
-    Raises JobNotFound, BadField for a bad cursor.
+    Raises JobNotFound, PageNotFound for a bad cursor.
     """
     with lib.store.read() as tx:
         stored.get(tx, job_id)

@@ -41,7 +41,7 @@ def words(lib: Library) -> list[LabelCount]:
 
 
 def page(lib: Library, kind: LabelKind, limit: int, cursor: str | None = None) -> Page[LabelCount]:
-    """One page of the labels of a kind, by name. Raises BadField for a bad cursor."""
+    """One page of the labels of a kind, by name. Raises PageNotFound for a bad cursor."""
     with lib.store.read() as tx:
         found = stored.page(tx, kind, SYNTHESIZED, limit, cursor)
         total = stored.total(tx, kind)

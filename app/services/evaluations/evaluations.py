@@ -74,7 +74,7 @@ def finish(tx: Tx, claimed: ClaimedJob, found: Evaluated) -> None:
 def list_evaluations(
     lib: Library, kind: EvaluationKind | None = None, limit: int = 50, cursor: str | None = None
 ) -> Page[EvaluationRecord]:
-    """One page of results, newest first. Raises BadField for a bad cursor."""
+    """One page of results, newest first. Raises PageNotFound for a bad cursor."""
     name = None if kind is None else kind.value
     with lib.store.read() as tx:
         page = stored.list_page(tx, kind=name, limit=limit, cursor=cursor)

@@ -62,7 +62,7 @@ class Paging:
     def at(
         cls, cursor: str | None, question: str, clip_fields: frozenset[str] | None = None
     ) -> Paging:
-        """The page at a client's cursor. Raises BadField if the cursor is of another query."""
+        """The page at a client's cursor. Raises PageNotFound if the cursor is of another query."""
         after = None if cursor is None else cursors.decode(cursor, question)
         return cls(question, after, clip_fields)
 

@@ -7,7 +7,7 @@ from itertools import chain
 
 import numpy as np
 
-from app.errors import BadField
+from app.errors import PageNotFound
 from app.kinedex_error import KinedexError, Place
 from app.models.metric.learned_metric import INPUTS
 from app.numerics.arrays import BoolArray, IntArray
@@ -155,7 +155,7 @@ class QueryParts:
             )
         if len(paging.after.scales) != scale_count(self._method) * len(self._described):
             places = [Place("cursor", "this is not a cursor of this server")]
-            raise BadField("The cursor cannot be used.", places=places)
+            raise PageNotFound(places=places)
         return paging.after.scales
 
     @property

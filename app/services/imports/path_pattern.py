@@ -16,6 +16,8 @@ from app.store.clips.metadata_values import from_cell
 
 MAX_PATTERN = 500
 """Characters of a pattern."""
+PATTERN_OF_PATHS = r"^[^{}]*(\{[^{}.=]*[^{}.=\s][^{}.=]*\}[^{}]*)+$"
+"""What every pattern matches, as a regular expression for the description of the API."""
 NO_FIELD = ("roles", "metadata")
 """Fields that a part of a path cannot be."""
 FIELDS = tuple(name for name in (*clip_fields.LABELS, *clip_fields.HINTS) if name not in NO_FIELD)

@@ -79,7 +79,7 @@ def signatures(
     """The signatures of a model, and the weights of the clips that pass a filter, sorted by name.
 
     Only clips that were recorded are listed. Raises NotFound, NoSignatures, ModelNotFitted, and
-    BadField for a wrong cursor.
+    PageNotFound for a bad cursor.
     """
     fitted = _fitted(lib, model_id)
     persons, tasks = person_parameters(fitted.model), task_parameters(fitted.model)

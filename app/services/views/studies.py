@@ -120,7 +120,7 @@ def get_pair(lib: Library, pair_id: str) -> PairRecord:
 
 
 def list_pairs(lib: Library, limit: int = 50, cursor: str | None = None) -> Page[PairRecord]:
-    """One page of pairs, the newest first. Raises BadField for a bad cursor."""
+    """One page of pairs, the newest first. Raises PageNotFound for a bad cursor."""
     with lib.store.read() as tx:
         return stored.list_pairs(tx, limit=limit, cursor=cursor).counted(stored.total_pairs(tx))
 

@@ -74,7 +74,7 @@ def person_names(tx: Tx) -> frozenset[str]:
 def page(
     tx: Tx, kind: LabelKind, source: str, limit: int, cursor: str | None = None
 ) -> Page[CountBySource]:
-    """At most `limit` labels of a kind, sorted by name; raises BadField at "cursor"."""
+    """At most `limit` labels of a kind, sorted by name; raises PageNotFound at "cursor"."""
     after = None if cursor is None else read_cursor(cursor, kind.value, str).value
     counts = _counts(tx, _COLUMNS[kind], source, after=after, limit=limit + 1)
     if len(counts) <= limit:

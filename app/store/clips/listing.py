@@ -53,7 +53,7 @@ def list_clips(
     limit: int = 50,
     cursor: str | None = None,
 ) -> Page[ClipRecord]:
-    """One page of at most `limit` clips; raises BadField at "sort" or "cursor"."""
+    """One page of at most `limit` clips; raises BadField at "sort", PageNotFound at "cursor"."""
     chosen, descending = _sort_of(sort)
     passes = condition(filter, _sought_id(tx, filter))
     query = select(clips, chosen.column.label("sorted_by")).where(passes)

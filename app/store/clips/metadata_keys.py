@@ -39,7 +39,7 @@ class MetadataKey:
 def page(tx: Tx, max_values: int, limit: int, cursor: str | None = None) -> Page[MetadataKey]:
     """At most `limit` keys, sorted by name, each with its most frequent values.
 
-    Raises BadField at "cursor".
+    Raises PageNotFound at "cursor".
     """
     after = None if cursor is None else read_cursor(cursor, SORT, str).value
     keys = _counted(tx, limit + 1, after)

@@ -12,7 +12,7 @@ from typing import Generic, TypeVar
 
 from sqlalchemy import ColumnElement, and_, or_
 
-from app.errors import BadField
+from app.errors import PageNotFound
 from app.kinedex_error import Place
 from app.store.database import cursor_codec
 from app.store.database.cursor_codec import as_number, as_text
@@ -58,8 +58,8 @@ def write_cursor(sort: str, position: Position) -> str:
 def read_cursor(cursor: str, sort: str, kind: type[Value]) -> Position:
     """The position in a cursor.
 
-    kind: the type of the sorted column. Raises BadField at "cursor" if the text is no cursor, or
-    if it was written for another sort.
+    kind: the type of the sorted column. Raises PageNotFound at "cursor" if the text is no cursor,
+    or if it was written for another sort.
     """
     try:
         cursor_sort, value, row_id = cursor_codec.decode(cursor)
@@ -67,8 +67,7 @@ def read_cursor(cursor: str, sort: str, kind: type[Value]) -> Position:
             return Position(_as_kind(value, kind), as_text(row_id))
     except ValueError:  # NotACursor, or another number of values
         pass
-    raise BadField(
-        "The cursor is not from this list",
+    raise PageNotFound(
         places=[Place("cursor", "expected the `next` of a page with the same sort and filter")],
     )
 

@@ -145,7 +145,7 @@ def page(
     limit: int = 50,
     cursor: str | None = None,
 ) -> Page[ImportedFile]:
-    """At most `limit` files of an import, sorted by path; raises BadField at "cursor"."""
+    """At most `limit` files of an import, sorted by path; raises PageNotFound at "cursor"."""
     query = _of(job_id)
     if outcome is not None:
         query = query.where(_outcome == outcome.value)

@@ -69,7 +69,7 @@ def list_jobs(
     limit: int = 50,
     cursor: str | None = None,
 ) -> Page[JobRecord]:
-    """One page of at most `limit` jobs, newest first; raises BadField at "cursor"."""
+    """One page of at most `limit` jobs, newest first; raises PageNotFound at "cursor"."""
     query = _filtered(select(jobs), kind, state)
     if cursor is not None:
         position = read_cursor(cursor, NEWEST_FIRST, datetime)

@@ -8,7 +8,15 @@ from typing import Any
 import pytest
 
 from app.demo import DemoClip
-from app.errors import BadField, ClipNotFound, ClipNotReady, EmptyFile, ModelNotFitted, Unreadable
+from app.errors import (
+    BadField,
+    ClipNotFound,
+    ClipNotReady,
+    EmptyFile,
+    ModelNotFitted,
+    PageNotFound,
+    Unreadable,
+)
 from app.search.example.methods import Method
 from app.services.clips import catalogue as clips
 from app.services.find import find
@@ -164,7 +172,7 @@ def test_a_cursor_of_another_query_is_refused(ready_library: Library, clip_of: F
         MotionQuery(QuerySource(walk), cursor=cursor, include_self=True),
         MotionQuery(QuerySource(walk), cursor=cursor, tempo="same"),
     ):
-        with pytest.raises(BadField, match="cursor"):
+        with pytest.raises(PageNotFound):
             find.find_motion(ready_library, other)
 
 

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.errors import BadField
+from app.errors import BadField, PageNotFound
 from app.store.clips import listing as clip_listing
 from app.store.clips.filter import ClipFilter
 from app.store.clips.measures import MEASURES
@@ -171,7 +171,7 @@ def packed(content: object) -> str:
     ],
 )
 def test_bad_cursors_name_the_field(store: Store, cursor: str) -> None:
-    with pytest.raises(BadField) as failure, store.read() as tx:
+    with pytest.raises(PageNotFound) as failure, store.read() as tx:
         clip_listing.list_clips(tx, ClipFilter(), sort="name", cursor=cursor)
     assert [place.location for place in failure.value.places] == ["cursor"]
 
@@ -182,7 +182,7 @@ def test_bad_cursors_name_the_field(store: Store, cursor: str) -> None:
     sort=st.sampled_from(["name", "-duration", "created_at"]),
 )
 def test_any_cursor_is_read_or_refused(store: Store, cursor: str, sort: str) -> None:
-    with store.read() as tx, contextlib.suppress(BadField):
+    with store.read() as tx, contextlib.suppress(PageNotFound):
         clip_listing.list_clips(tx, ClipFilter(), sort=sort, cursor=cursor)
 
 
@@ -198,7 +198,7 @@ def test_any_cursor_is_read_or_refused(store: Store, cursor: str, sort: str) -> 
 )
 def test_values_that_no_row_can_have_are_refused(store: Store, sort: str, value: str) -> None:
     cursor = base64.urlsafe_b64encode(f'["{sort}",{value},"clip"]'.encode()).decode()
-    with pytest.raises(BadField), store.read() as tx:
+    with pytest.raises(PageNotFound), store.read() as tx:
         clip_listing.list_clips(tx, ClipFilter(), sort=sort, cursor=cursor)
 
 

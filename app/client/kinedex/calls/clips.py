@@ -109,6 +109,9 @@ def list_clips(
     sort: A minus sign at the start reverses the order. Default: -created_at.
     limit: Maximum number of items in all; None lists all.
     cursor: Where the list starts: `next` of an earlier page.
+    fields: Members of each item, with commas between them, as in `id,name`; of the clip of a hit
+        as in `score,clip.id`. Default: all. Other members are then left out, even if the schema
+        of the answer requires them.
     filter: Filters by name, as in a search, for those that are no arguments: {"meta.condition":
         "tired", "meta.age.min": 30}.
     """
@@ -247,7 +250,12 @@ def create_clip(
 
 
 def get_clip(clip_id: str, *, fields: Sequence[str] | None = None) -> Call[Clip]:
-    """One clip."""
+    """One clip.
+
+    fields: Members of each item, with commas between them, as in `id,name`; of the clip of a hit
+        as in `score,clip.id`. Default: all. Other members are then left out, even if the schema
+        of the answer requires them.
+    """
     from kinedex.types.clips import Clip
 
     return Call(

@@ -101,6 +101,7 @@ def get_signatures(
     person: Only clips of these persons. Default: [].
     task: Only clips with these tasks. Default: [].
     limit: Maximum number of items in one answer. Default: 100.
+    cursor: `next` of the previous answer. The answer starts there.
     """
     from kinedex.types.signatures import Signatures
 

@@ -38,6 +38,9 @@ def search_pose(
 
     The pose is that of a stored clip or of an uploaded file at a time, or 13 positions.
 
+    fields: Members of each item, with commas between them, as in `id,name`; of the clip of a hit
+        as in `score,clip.id`. Default: all. Other members are then left out, even if the schema
+        of the answer requires them.
     file: The query motion, in any format that an upload may have. It is never stored.
     skeleton: The ASF file that an AMC file needs.
     unit: m, dm, cm, mm, in, ft, cmu (unit of the CMU files), or meters per unit.

@@ -43,6 +43,9 @@ def search_motion(
     With scope `windows`, find parts of clips, with their start and end. With scope `segments`,
     find motions from one keypose to the next.
 
+    fields: Members of each item, with commas between them, as in `id,name`; of the clip of a hit
+        as in `score,clip.id`. Default: all. Other members are then left out, even if the schema
+        of the answer requires them.
     file: The query motion, in any format that an upload may have. It is never stored.
     skeleton: The ASF file that an AMC file needs.
     unit: m, dm, cm, mm, in, ft, cmu (unit of the CMU files), or meters per unit.
@@ -135,6 +138,9 @@ def search_words(
 
     The `score` of a hit is a probability, in both modes.
 
+    fields: Members of each item, with commas between them, as in `id,name`; of the clip of a hit
+        as in `score,clip.id`. Default: all. Other members are then left out, even if the schema
+        of the answer requires them.
     words: Words, phrases or sentences. Inflected forms and words of the same meaning are
         understood. A word with a minus before it (-left) leaves out the clips that carry it.
     mode: How clips are ranked. default: by a kernel regression from motion features to words.
@@ -183,6 +189,9 @@ def search_parts(
     A clip is a good hit if it is like every example that is for something, carries the words,
     and is like no example that is against something. Each hit tells what each part contributed.
 
+    fields: Members of each item, with commas between them, as in `id,name`; of the clip of a hit
+        as in `score,clip.id`. Default: all. Other members are then left out, even if the schema
+        of the answer requires them.
     file: The query motion, in any format that an upload may have. It is never stored.
     skeleton: The ASF file that an AMC file needs.
     method: How examples are compared. fused, dtw, msv-dtw and msv-xcorr are exact for the 300

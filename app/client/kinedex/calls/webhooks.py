@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from kinedex.call import Call, nothing, path_of, record
 from kinedex.sent import UNSET, Unset, corrections, given
@@ -22,7 +22,23 @@ def list_webhooks() -> Call[WebhookList]:
 def create_webhook(
     url: str,
     *,
-    events: Sequence[str] | None = None,
+    events: Sequence[
+        Literal[
+            "ingest.succeeded",
+            "ingest.failed",
+            "ingest.canceled",
+            "import.succeeded",
+            "import.failed",
+            "import.canceled",
+            "fit.succeeded",
+            "fit.failed",
+            "fit.canceled",
+            "evaluate.succeeded",
+            "evaluate.failed",
+            "evaluate.canceled",
+        ]
+    ]
+    | None = None,
     secret: str | None = None,
     enabled: bool | None = None,
 ) -> Call[WebhookCreated]:
@@ -74,7 +90,24 @@ def get_webhook(webhook_id: str) -> Call[Webhook]:
 def update_webhook(
     webhook_id: str,
     *,
-    events: Sequence[str] | Unset | None = UNSET,
+    events: Sequence[
+        Literal[
+            "ingest.succeeded",
+            "ingest.failed",
+            "ingest.canceled",
+            "import.succeeded",
+            "import.failed",
+            "import.canceled",
+            "fit.succeeded",
+            "fit.failed",
+            "fit.canceled",
+            "evaluate.succeeded",
+            "evaluate.failed",
+            "evaluate.canceled",
+        ]
+    ]
+    | Unset
+    | None = UNSET,
     enabled: bool | Unset | None = UNSET,
 ) -> Call[Webhook]:
     """Change the events, or switch a webhook on or off.
