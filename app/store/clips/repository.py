@@ -315,6 +315,6 @@ def words_of(tx: Tx, clip_ids: Collection[str]) -> dict[str, tuple[str, ...]]:
     """Words by clip id, in the client's order."""
     words_by_id: dict[str, list[str]] = {}
     for batch in in_batches(clip_ids):
-        for clip_id, word in tx.execute(_WORDS, {"ids": batch}):
+        for clip_id, word in tx.execute(_WORDS, {"ids": batch}).all():
             words_by_id.setdefault(clip_id, []).append(word)
     return {clip_id: tuple(words) for clip_id, words in words_by_id.items()}

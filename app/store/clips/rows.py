@@ -33,6 +33,7 @@ IN_OTHER_TABLES = ("words", "metadata")
 """Labels that are not columns of the table `clips`."""
 _LABELS = frozenset(field.name for field in fields(ClipLabels))
 _HINT_COLUMNS = {field.name: f"{field.name}_override" for field in fields(AnalysisHints)}
+_NO_HINTS = AnalysisHints()
 _AUDIO_COLUMNS = {field.name: f"audio_{field.name}" for field in fields(AttachedAudio)}
 _RECORD_COLUMNS = tuple(field.name for field in fields(ClipRecord) if field.name in clips.c)
 _AS_THEY_ARE = _LABELS - set(IN_OTHER_TABLES) | {"imported"}
@@ -130,7 +131,12 @@ def to_record(row: RowMapping, words: tuple[str, ...], metadata: Metadata) -> Cl
 
 
 def _hints(row: RowMapping) -> AnalysisHints:
-    return AnalysisHints(**{name: _frozen(row[column]) for name, column in _HINT_COLUMNS.items()})
+    stated = {
+        name: _frozen(row[column])
+        for name, column in _HINT_COLUMNS.items()
+        if row[column] is not None
+    }
+    return AnalysisHints(**stated) if stated else _NO_HINTS
 
 
 def _audio(row: RowMapping) -> AttachedAudio | None:

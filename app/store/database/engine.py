@@ -16,6 +16,7 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any, Self
 
+from pydantic_core import from_json
 from sqlalchemy import Connection, Engine, create_engine, event, func, select
 from sqlalchemy.engine import URL, make_url
 from sqlalchemy.exc import ArgumentError, DBAPIError
@@ -237,6 +238,7 @@ def _open_engine(parsed: URL, file: DatabaseFile | None, *, foreign_keys: bool) 
     # hide_parameters: logs and tracebacks must not hold the content of rows.
     common: dict[str, Any] = {
         "json_serializer": _to_json,
+        "json_deserializer": from_json,
         "hide_parameters": True,
         "pool_size": POOL_SIZE,
         "max_overflow": POOL_OVERFLOW,
