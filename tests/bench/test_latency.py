@@ -7,7 +7,7 @@ printed and not asserted (target of issue 4: p95 of 50 ms at 100,000 clips with 
 time of the API is printed too: it says more on a busy machine.
 
 With 500, 10,000 and 100,000 clips it takes about five minutes and 7 GB of disk space.
-KINEDEX_BENCH_CLIPS=500,10000 chooses other numbers.
+BENCH_CLIPS=500,10000 chooses other numbers.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ FIGURES = Section(
 
 pytestmark = pytest.mark.bench
 
-COUNTS = [int(n) for n in os.environ.get("KINEDEX_BENCH_CLIPS", "500,10000,100000").split(",")]
+COUNTS = [int(n) for n in os.environ.get("BENCH_CLIPS", "500,10000,100000").split(",")]
 REQUESTS = 100
 NAMES = (
     "paced_vector",

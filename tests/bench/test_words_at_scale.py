@@ -8,7 +8,6 @@ the run (target of issue 6: queries of 20 ms at the 95th percentile, a fit in mi
 
 from __future__ import annotations
 
-import functools
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -18,24 +17,18 @@ import httpx2
 import numpy as np
 import psutil
 import pytest
-from sqlalchemy import delete, insert
 
-from app.analysis.analyze import ANALYSIS_VERSION
 from app.analysis.symbols.symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.config import Settings
 from app.models.words.symbol_space import LANDMARKS, symbol_distances
-from app.numerics.arrays import FloatArray
 from app.numerics.hmm.model import GaussianHMM
-from app.services.training.training_set import NAMES
 from app.store import identity
-from app.store.database import tables as t
-from app.store.database.blobs import to_blob
 from app.store.store import Store
-from tests.bench.large_library import VECTOR, Sample, fill, many_clips, samples
+from tests.bench.large_library import fill, samples
 from tests.bench.page import Section
 from tests.bench.processes import Tree, processes_over
+from tests.bench.worded_library import describe, disturbed
 from tests.live import ENDED, Live, serve
-from tests.real_clips import manifest
 
 FIGURES = Section(
     "words_at_scale",
@@ -46,52 +39,8 @@ FIGURES = Section(
 pytestmark = pytest.mark.bench
 
 CLIPS = 10_000
-SPREAD = 0.05
-"""Deviation of the noise, relative to that of a statistic, and in the units of the channels."""
-STATISTICS, MOVED = "symbol_statistics", "symbol_means"
-UNCHANGED_ARRAYS = tuple({*NAMES} - {VECTOR, STATISTICS, MOVED})
-"""The other arrays that a fit reads."""
 QUERIES = 101
-AT_ONCE = 500
 FIT_SECONDS = 3600.0
-
-
-@functools.lru_cache(maxsize=1)
-def _words() -> dict[str, list[tuple[str, ...]]]:
-    """Label sets of the manifest, by task."""
-    found: dict[str, list[tuple[str, ...]]] = {}
-    for row in manifest():
-        found.setdefault(row["task"], []).append(tuple(row["words"].split()))
-    return found
-
-
-def _disturbed(sample: Sample, rng: np.random.Generator) -> dict[str, FloatArray]:
-    """The arrays of a clip that word models read, with noise."""
-    spread = np.stack([one.arrays[STATISTICS] for one in samples()]).std(axis=0)
-    statistics = sample.arrays[STATISTICS] + rng.normal(size=spread.shape) * spread * SPREAD
-    means = sample.arrays[MOVED] + rng.normal(size=sample.arrays[MOVED].shape[1]) * SPREAD
-    moved = {STATISTICS: statistics.astype(np.float32), MOVED: means.astype(np.float32)}
-    return moved | {name: sample.arrays[name] for name in UNCHANGED_ARRAYS}
-
-
-def _describe(store: Store) -> None:
-    """Give the clips of a filled store the arrays that a fit reads, and words that people use."""
-    rng = np.random.default_rng(3)
-    made = list(many_clips(CLIPS))
-    for first in range(0, CLIPS, AT_ONCE):
-        words, arrays = [], []
-        for sample, clip in made[first : first + AT_ONCE]:
-            said = _words()[sample.task]
-            for position, word in enumerate(dict.fromkeys(said[rng.integers(len(said))])):
-                words.append({"clip_id": clip.id, "word": word, "position": position})
-            for name, array in _disturbed(sample, rng).items():
-                row = {"clip_id": clip.id, "name": name, "version": ANALYSIS_VERSION}
-                arrays.append(row | to_blob(array))
-        with store.write() as tx:
-            ids = [clip.id for _, clip in made[first : first + AT_ONCE]]
-            tx.execute(delete(t.clip_words).where(t.clip_words.c.clip_id.in_(ids)))
-            tx.execute(insert(t.clip_words), words)
-            tx.execute(insert(t.clip_arrays), arrays)
 
 
 @pytest.fixture(scope="module")
@@ -100,7 +49,7 @@ def live(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
     identity.prepare(settings.database, settings.files_dir)
     store = Store.open(settings.database, settings.files_dir)
     fill(store, CLIPS, names=())
-    _describe(store)
+    describe(store, CLIPS)
     store.close()
     with serve(settings.data_dir, worker=True) as service:
         yield service
@@ -224,5 +173,5 @@ def test_distances_grow_with_landmarks_not_with_the_square() -> None:
 def _symbols(count: int) -> list[GaussianHMM]:
     rng = np.random.default_rng(0)
     chosen = rng.integers(len(samples()), size=count)
-    arrays = (_disturbed(samples()[row], rng) for row in chosen)
+    arrays = (disturbed(samples()[row], rng) for row in chosen)
     return [symbol_from_arrays({name: one[name] for name in SYMBOL_ARRAYS}) for one in arrays]
