@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from datetime import datetime
+from datetime import UTC, datetime
 from typing import Annotated
 
 import typer
@@ -34,6 +34,8 @@ def create(
     from app.store import audit, keys
 
     end = None if expires is None else time_after(expires, "--expires")
+    if end is not None and end <= datetime.now(UTC):
+        raise typer.BadParameter(f"{end:%F %T} UTC is over", param_hint="--expires")
     of_source = fields.text("source", source)
     with open_library(context) as lib, lib.store.write() as tx:
         created = keys.create(tx, role, name, source=of_source, expires_at=end)

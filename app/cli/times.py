@@ -29,6 +29,6 @@ def _time(text: str, option: str, sign: int) -> datetime:
         if match is not None:
             return datetime.now(UTC) + sign * int(match["count"]) * _UNITS[match["unit"]]
         time = datetime.fromisoformat(text)
+        return time.replace(tzinfo=UTC) if time.tzinfo is None else time.astimezone(UTC)
     except (ValueError, OverflowError) as problem:
         raise typer.BadParameter(f"{text!r} is neither {TIME_HELP}", param_hint=option) from problem
-    return time.replace(tzinfo=UTC) if time.tzinfo is None else time.astimezone(UTC)

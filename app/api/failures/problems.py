@@ -52,7 +52,7 @@ class RateLimited(KinedexError):
         self,
         detail: str | None = None,
         *,
-        retry_after: int,
+        retry_after: int = 1,
         headers: Mapping[str, str] | None = None,
     ) -> None:
         super().__init__(detail)

@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
-from datetime import datetime
+from datetime import UTC, datetime
 from typing import Annotated, Any
 
-from pydantic import AwareDatetime, Field
+from pydantic import AfterValidator, AwareDatetime, Field
 
 from app.api.schemas.base import Cursor, Id, Incoming, Limit, Outgoing, Paged
 from app.store.audit import AuditFilter
 
 MAX_ACTION_LENGTH = 100
+
+
+def _in_utc(time: datetime) -> datetime:
+    try:
+        return time.astimezone(UTC)
+    except OverflowError:  # in the year 1 or 9999 of another time zone
+        return (datetime.min if time.year == 1 else datetime.max).replace(tzinfo=UTC)
+
+
+Time = Annotated[AwareDatetime, AfterValidator(_in_utc)]
 
 
 class AuditEntry(Outgoing):
@@ -43,8 +53,8 @@ class AuditList(Paged):
 class AuditQuery(Incoming):
     """Filters of the audit log, and a page of it."""
 
-    since: AwareDatetime | None = Field(None, description="Not before this time (ISO 8601).")
-    until: AwareDatetime | None = Field(None, description="Before this time.")
+    since: Time | None = Field(None, description="Not before this time (ISO 8601).")
+    until: Time | None = Field(None, description="Before this time.")
     key: Id | None = Field(None, description="Id of an API key.")
     action: Annotated[str, Field(min_length=1, max_length=MAX_ACTION_LENGTH)] | None = None
     clip: Id | None = Field(None, description="Id of a clip, which may be deleted.")
