@@ -51,9 +51,8 @@ def audit(
 def _row(entry: dict[str, Any]) -> tuple[object, ...]:
     by = entry["key_name"] or entry["key_id"]
     details = ", ".join(f"{name}: {_text(value)}" for name, value in entry["details"].items())
-    at = entry["at"][:19].replace("T", " ")
-    address = entry["address"] or "this machine"
-    return at, entry["action"], by, address, entry["clip_id"], details
+    at = entry["at"][:16].replace("T", " ")
+    return at, entry["action"], by, entry["address"], entry["clip_id"], details
 
 
 def _text(value: object) -> str:

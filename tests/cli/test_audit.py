@@ -29,7 +29,7 @@ def test_commands_are_recorded_and_shown(kinedex: Kinedex) -> None:
     rows = list(csv.DictReader(io.StringIO(shown.out)))
     assert made["id"] in rows[0]["details"]
     assert {row["action"] for row in rows} == {"kinedex keys create"}
-    assert "this machine" in kinedex("audit").out
+    assert made["id"][:4] in kinedex("audit").out
     assert kinedex("audit", "--until", "2001-01-01", "--json").json()["items"] == []
 
 
