@@ -23,12 +23,14 @@ from app.api.guard.gates import Gates
 from app.api.guard.idempotency import Idempotency
 from app.api.guard.limits import BodyLimit
 from app.api.guard.methods import KnownMethods
+from app.api.guard.rates import RateLimits
 from app.api.guard.sessions import Sessions
 from app.api.guard.slow_bodies import SlowBodies
 from app.api.loading import Loading
 from app.api.metrics import install_metrics
 from app.api.routes import (
     alignment,
+    audit,
     clip_views,
     clips,
     evaluations,
@@ -114,6 +116,7 @@ ROUTES = (
     studies,
     segments,
     webhooks,
+    audit,
     status,
     session,
     health,
@@ -136,6 +139,7 @@ def create_app(settings: Settings) -> FastAPI:
     )
     app.state.settings = settings
     app.state.library = None
+    app.state.limits = None
     app.state.sessions = Sessions()
     app.state.stopping = False
     app.state.start_failure = None
@@ -176,6 +180,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     loading = Loading(library)
     loading.start()
     library.health.start()
+    app.state.limits = limits = RateLimits(library)
     app.state.library = library
     try:
         yield
@@ -183,4 +188,5 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         app.state.library = None
         await run_in_threadpool(loading.stop)
         await run_in_threadpool(library.health.stop)
+        limits.close()
         await run_in_threadpool(library.close)

@@ -1,21 +1,27 @@
 """Dependencies of the routes: the library, and an API key that allows the call.
 
 Roles: `read` for calls that only read (searches and recognition too), `write` for calls that
-store, change or fit something, `admin` for all calls. Calls need no key while no key exists and
+store, change or fit something, `admin` for all calls. A key for one source may make only the calls
+of `reads_source`, and sees only the clips of its source. Calls need no key while no key exists and
 the service listens on loopback only. Pages, `/livez`, `/readyz`, `/docs`, `/v1/session` and
 `/openapi.json` never need a key, because they show nothing of the library. `/metrics` needs `read`.
 """
 
 from __future__ import annotations
 
+from collections.abc import AsyncIterator
 from typing import Annotated
 
 from fastapi import Depends, Request
 from fastapi.security import APIKeyHeader, HTTPAuthorizationCredentials, HTTPBearer
 
 from app.api.failures.problems import NotReadyYet
+from app.api.guard.audited import audited_call
 from app.api.guard.callers import Caller
+from app.errors import Forbidden
 from app.services.library.library import Library
+from app.store import audit
+from app.store.clips import visibility
 from app.store.key_role import KeyRole
 
 _bearer = HTTPBearer(auto_error=False, description="An API key (`kinedex keys create`).")
@@ -37,10 +43,15 @@ Lib = Annotated[Library, Depends(get_library)]
 
 
 class Allows:
-    """A dependency: it checks that the caller's key has at least this role."""
+    """A dependency: it checks that the caller's key has at least this role.
 
-    def __init__(self, role: KeyRole) -> None:
+    A change by the route is recorded in the audit log. is_of_source: whether a key for one source
+    may call the route; then the store shows only the clips of this source (`clips.visibility`).
+    """
+
+    def __init__(self, role: KeyRole, *, is_of_source: bool = False) -> None:
         self.role = role
+        self.is_of_source = is_of_source
 
     async def __call__(
         self,
@@ -48,12 +59,22 @@ class Allows:
         # `AccessCheck` reads these headers. They are here only for the OpenAPI description.
         _bearer: Annotated[HTTPAuthorizationCredentials | None, Depends(_bearer)],
         _header: Annotated[str | None, Depends(_header)],
-    ) -> None:
-        """Raises Unauthorized without a valid key, Forbidden if the key's role is too low."""
+    ) -> AsyncIterator[None]:
+        """Raises Unauthorized without a valid key, Forbidden if the key does not allow the call."""
         caller: Caller = request.state.caller
         caller.require(self.role)
+        if caller.source is not None and not self.is_of_source:
+            raise Forbidden("A key for one source only lists, reads, finds and exports its clips.")
+        if self.role is not KeyRole.READ and request.method != "GET":
+            with audit.calling(audited_call(request)):
+                yield
+        else:
+            with visibility.only_source(caller.source):
+                yield
 
 
+# A streamed answer reads clips after its route has returned, so these end with the request.
 reads = Depends(Allows(KeyRole.READ))
-writes = Depends(Allows(KeyRole.WRITE))
-administers = Depends(Allows(KeyRole.ADMIN))
+reads_source = Depends(Allows(KeyRole.READ, is_of_source=True))
+writes = Depends(Allows(KeyRole.WRITE), scope="function")
+administers = Depends(Allows(KeyRole.ADMIN), scope="function")

@@ -41,6 +41,7 @@ MODULES = {
     "request_fit": "models",
     "get_status": "status",
     "get_export": "export",
+    "list_audit": "audit",
 }
 """The module of routes of an operation. To import all modules takes a second; other operations
 import them all."""
@@ -53,7 +54,7 @@ class _LocalUser:
         self.app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        caller = Caller(role=None, has_key=False, is_free=True)
+        caller = Caller(has_key=False, is_free=True)
         scope.setdefault("state", {})["caller"] = caller
         await self.app(scope, receive, send)
 

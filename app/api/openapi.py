@@ -28,6 +28,7 @@ _DESCRIPTIONS = {
     413: "The body is larger than the limit",
     415: "The content or its media type is not supported",
     422: "A field is wrong, or the file cannot be used",
+    429: "Too many calls, or too many wrong keys; with `Retry-After`",
     500: "Something went wrong; the log has the details",
     503: "The service is starting or too busy, or the call took longer than its time limit; with "
     "`Retry-After`",
@@ -47,6 +48,7 @@ _EXAMPLES: dict[int, KinedexError] = {
         "The request has fields that are wrong.",
         places=[Place("query.limit", "Input should be less than or equal to 1000")],
     ),
+    429: problems.RateLimited(retry_after=1),
     500: KinedexError(),
     503: problems.TooBusy("Too many heavy calls are waiting; try again shortly."),
     507: errors.DiskFull(),
@@ -72,7 +74,7 @@ OF_A_KEY = (errors.CallInProgress, errors.CallOvertaken, errors.AnswerLost)
 """Conflicts of every call that takes an Idempotency-Key."""
 BINARY = {"schema": {"type": "string", "format": "binary"}}
 """Bytes as the content of an answer. Of an answer without a schema, generated clients lose them."""
-_EVERYWHERE = (401, 403, 422, 500, 503)
+_EVERYWHERE = (401, 403, 422, 429, 500, 503)
 _WITH_A_BODY = (408, 413)
 """Statuses of every call that has a body. A route with a body lists 413."""
 _REQUEST_ID = {

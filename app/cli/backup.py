@@ -6,16 +6,19 @@ import os
 import signal
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from app.cli.output import AsJson, print_json, progress_bar
 from app.cli.settings import open_store, settings_of
-from app.errors import BadField
+from app.errors import BadField, StorageError
 from app.kinedex_error import Place
+
+if TYPE_CHECKING:
+    from app.store.store import Store
 
 
 def backup(
@@ -39,10 +42,21 @@ def backup(
             store, path, lambda done, total: bar.update(task, completed=done, total=total)
         )
         bar.update(task, completed=1, total=1)
+        _record(context, store)
     if as_json:
         print_json({"path": str(copy.path), "files": copy.files, "bytes": copy.bytes})
     else:
         typer.echo(f"{copy.path}: the database and {copy.files} files, {copy.bytes} bytes")
+
+
+def _record(context: typer.Context, store: Store) -> None:
+    """Record the copy in the audit log, if the library has the schema of this version."""
+    from app.store import audit
+    from app.store.database import schema
+
+    if schema.state(settings_of(context).database).is_current:
+        with suppress(StorageError), store.write() as tx:  # a copy of a full disk is welcome too
+            audit.add(tx, audit.Call("kinedex backup"))
 
 
 @contextmanager

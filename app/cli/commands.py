@@ -89,6 +89,11 @@ COMMANDS = {
     "evaluate": CommandEntry(
         "app.cli.evaluate.app", "program", "Measure the methods on your own library."
     ),
+    "audit": CommandEntry(
+        "app.cli.audit",
+        "audit",
+        "Show who changed, exported or forgot what, the newest first.",
+    ),
     "keys": CommandEntry("app.cli.keys", "program", "Create, list and revoke API keys."),
     "db": CommandEntry(
         "app.cli.db", "program", "Upgrade the database, or connect it to its files."

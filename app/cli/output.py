@@ -17,6 +17,8 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 from rich.table import Table
 from rich.text import Text
 
+from app.formats.csv.formulas import guarded
+
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 AsCsv = Annotated[bool, typer.Option("--csv", help="Print CSV (RFC 4180), with a header.")]
 
@@ -43,7 +45,8 @@ def print_csv(columns: Sequence[str], documents: Iterable[Mapping[str, Any]]) ->
     """Print JSON objects as CSV (RFC 4180) to standard output.
 
     columns: the members to print; `clip.name` is the member `name` of the member `clip`. null is an
-    empty field, lists of texts are joined by spaces, other lists and objects are JSON.
+    empty field, lists of texts are joined by spaces, other lists and objects are JSON. No text is a
+    formula of a spreadsheet (`formulas`).
     """
     from kinedex.tables import flat
 
@@ -72,7 +75,7 @@ def print_table(
     for index, name in enumerate(columns):
         cells = [row[index] for row in rows]
         is_numeric = bool(cells) and all(isinstance(cell, int | float) for cell in cells)
-        is_id = name == "id"
+        is_id = name == "id" or name.endswith("_id")
         table.add_column(name, justify="right" if is_numeric else "left", no_wrap=is_id)
         if is_id:
             table.columns[-1].min_width = max((len(str(cell)) for cell in cells), default=0)
@@ -114,6 +117,8 @@ def _cell(cell: object, is_cut: bool) -> Text:
 def _csv_cell(cell: object) -> object:
     if isinstance(cell, bool):
         return "true" if cell else "false"
+    if isinstance(cell, str):
+        return guarded(cell)
     return json.dumps(cell, ensure_ascii=False) if isinstance(cell, list | dict) else cell
 
 

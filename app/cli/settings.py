@@ -86,17 +86,25 @@ def open_store(context: typer.Context, *, for_copy: bool = False) -> Iterator[St
 def open_library(context: typer.Context) -> Iterator[Library]:
     """Open the library of the settings, and close it at the end.
 
-    Only the commands of MAKES_LIBRARY make a library. Raises ConfigurationError.
+    What the command changes is recorded in the audit log, once. Only the commands of MAKES_LIBRARY
+    make a library. Raises ConfigurationError.
     """
     from app.services.library.library import Library
+    from app.store import audit
 
     settings = settings_of(context)
     refuse_missing_library(settings, context.info_name or "")
     library = Library.open(settings)
     try:
-        yield library
+        with audit.calling(audit.Call(_command_of(context))):
+            yield library
     finally:
         library.close()
+
+
+def _command_of(context: typer.Context) -> str:
+    """The command without its arguments, for example `kinedex keys create`."""
+    return " ".join(["kinedex", *context.command_path.split()[1:]])
 
 
 def refuse_missing_library(settings: Settings, command: str = "") -> None:

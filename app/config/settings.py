@@ -118,6 +118,20 @@ class Settings(BaseSettings):
         ge=1,
         description="Open connections from one client address (behind a proxy: the proxy's).",
     )
+    rate_limit_per_minute: int = Field(
+        6000,
+        ge=0,
+        le=6_000_000,
+        description="Calls a minute with one API key, or from one client address without a key; "
+        "further ones are answered 429 with Retry-After. 0: no limit. On loopback without keys "
+        "there is no limit.",
+    )
+    rate_limit_burst: int = Field(
+        1000,
+        ge=1,
+        le=1_000_000,
+        description="Calls at once, before `KINEDEX_RATE_LIMIT_PER_MINUTE` counts.",
+    )
     request_timeout_s: float = Field(
         30.0,
         gt=0,
@@ -169,6 +183,12 @@ class Settings(BaseSettings):
         ge=0,
         le=MAX_RETENTION_DAYS,
         description="Days after which a job that has ended is removed; 0 keeps all jobs.",
+    )
+    audit_retention_days: int = Field(
+        365,
+        ge=0,
+        le=MAX_RETENTION_DAYS,
+        description="Days that the audit log keeps who changed or exported what; 0 keeps all.",
     )
     quarantine_days: float = Field(
         30.0,

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Self, TypeVar
 
 from app.errors import DiskFull, StorageError
-from app.store import keyed_calls
+from app.store import audit, keyed_calls
 from app.store.database.engine import ERASE_WAIT_S, Database, Tx
 from app.store.files.files import FileStore
 from app.store.files.reserve import Reserve
@@ -52,7 +52,9 @@ class Store:
         with self.database.write() as tx:
             yield tx
             keyed_calls.mark(tx)
+            audit.record(tx)
             has_removals = removals.settle(tx)
+        audit.settle()
         if has_removals:
             self.finish_removals()
 

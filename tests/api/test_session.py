@@ -48,18 +48,22 @@ def _sign_in(page: httpx2.Client, key: str) -> httpx2.Response:
     return page.post("/v1/session", json={"key": key})
 
 
+def _session(role: str | None, *, keys_needed: bool) -> dict[str, object]:
+    return {"keys_needed": keys_needed, "role": role, "source": None, "expires_at": None}
+
+
 def test_a_cookie_stands_for_the_key(page: httpx2.Client, locked: Locked) -> None:
-    assert page.get("/v1/session").json() == {"keys_needed": True, "role": None}
+    assert page.get("/v1/session").json() == _session(None, keys_needed=True)
     assert_problem(page.get("/v1/clips"), 401, "unauthorized")
     answer = _sign_in(page, locked[1][WRITE])
-    assert answer.json() == {"keys_needed": True, "role": "write"}
+    assert answer.json() == _session("write", keys_needed=True)
     cookie = answer.headers["set-cookie"].lower()
     assert "httponly" in cookie
     assert "samesite=strict" in cookie
     assert locked[1][WRITE] not in str(answer.headers) + answer.text
     assert page.get("/v1/clips").status_code == 200
     assert page.delete("/v1/clips/nope").status_code == 404
-    assert page.get("/v1/session").json() == {"keys_needed": True, "role": "write"}
+    assert page.get("/v1/session").json() == _session("write", keys_needed=True)
     assert not any(secret in locked[0].log.read_text() for secret in locked[1].values())
 
 
@@ -103,6 +107,8 @@ def test_a_wrong_key_signs_nobody_in(page: httpx2.Client, key: str) -> None:
         {"Origin": "http://127.0.0.1:1", "Sec-Fetch-Site": "same-site"},
         {"Origin": "http://evil.example"},
         {"Origin": "null"},
+        {"Origin": "ftp://HOST"},
+        {"Origin": "HOST"},
         {},
     ],
 )
@@ -111,6 +117,8 @@ def test_other_sites_cannot_use_the_cookie(
 ) -> None:
     live, secrets = locked
     _sign_in(page, secrets[WRITE])
+    host = live.url.removeprefix("http://")
+    headers = {name: value.replace("HOST", host) for name, value in headers.items()}
     with live.client(headers=headers, cookies=page.cookies) as other:
         assert_problem(other.delete("/v1/clips/nope"), 403, "forbidden")
         assert_problem(_sign_in(other, secrets[WRITE]), 403, "forbidden")
@@ -131,7 +139,7 @@ def test_pages_need_no_key(page: httpx2.Client) -> None:
 
 def test_where_no_key_is_asked_for_nobody_signs_in(idle_service: Live) -> None:
     with idle_service.client(headers={"Origin": idle_service.url}) as client:
-        assert client.get("/v1/session").json() == {"keys_needed": False, "role": None}
+        assert client.get("/v1/session").json() == _session(None, keys_needed=False)
         assert_problem(_sign_in(client, "kx_a_b"), 401, "unauthorized")
         client.cookies.set(COOKIE, "of an earlier run")
         assert client.get("/v1/clips").status_code == 200
@@ -142,7 +150,7 @@ def test_an_empty_key_is_enough_where_no_keys_are_needed(
 ) -> None:
     with idle_service.client(headers={"Origin": idle_service.url}) as client:
         answer = _sign_in(client, "")
-        assert answer.json() == {"keys_needed": False, "role": None}
+        assert answer.json() == _session(None, keys_needed=False)
         assert "set-cookie" not in answer.headers
     assert_problem(_sign_in(page, ""), 401, "unauthorized")
 

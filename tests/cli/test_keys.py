@@ -7,7 +7,7 @@ from tests.cli.conftest import Kinedex
 
 def test_a_key_is_shown_once_and_can_be_revoked(kinedex: Kinedex) -> None:
     made = kinedex("keys", "create", "--role", "write", "--name", "studio", "--json").json()
-    assert made.keys() == {"id", "role", "key"}
+    assert made.keys() == {"id", "role", "source", "expires_at", "key"}
     listed = {key["id"]: key for key in kinedex("keys", "list", "--json").json()}
     assert listed[made["id"]]["role"] == "write"
     assert listed[made["id"]]["name"] == "studio"

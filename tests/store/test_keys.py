@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from datetime import timedelta
+
 import pytest
 
-from app.errors import NotFound
+from app.errors import BadField, NotFound
 from app.store import keys
+from app.store.database.ids import utc_now
 from app.store.key_role import KeyRole
 from app.store.store import Store
 
@@ -51,3 +54,37 @@ def test_an_unknown_key_cannot_be_revoked(store: Store) -> None:
 def test_each_role_includes_the_rights_of_lower_roles() -> None:
     allowed = [[role.allows(needed) for needed in KeyRole] for role in KeyRole]
     assert allowed == [[True, False, False], [True, True, False], [True, True, True]]
+
+
+def test_a_key_ends_at_its_time(store: Store) -> None:
+    now = utc_now()
+    with store.write() as tx:
+        created = keys.create(tx, KeyRole.READ, "a", expires_at=now + timedelta(days=1))
+        assert keys.verify(tx, created.secret, now) == created.record
+        assert keys.is_any_valid(tx)
+        assert keys.verify(tx, created.secret, now + timedelta(days=1)) is None
+        keys.create(tx, KeyRole.READ, "old", expires_at=now)
+        keys.revoke(tx, created.record.id)
+        assert not keys.is_any_valid(tx)
+        assert keys.is_any(tx)
+
+
+def test_the_last_use_is_stored_once_a_minute(store: Store) -> None:
+    now = utc_now()
+    with store.write() as tx:
+        created = keys.create(tx, KeyRole.READ, "a")
+        assert created.record.is_use_due(now)
+        for seconds, stored in ((0, 0), (59, 0), (60, 60), (90, 60)):
+            keys.note_use(tx, created.record.id, now + timedelta(seconds=seconds))
+            (record,) = keys.list_keys(tx)
+            assert record.used_at == now + timedelta(seconds=stored)
+    assert not record.is_use_due(now + timedelta(seconds=90))
+    assert record.is_use_due(now + timedelta(seconds=120))
+
+
+def test_a_key_for_one_source_can_only_read(store: Store) -> None:
+    with store.write() as tx:
+        assert keys.create(tx, KeyRole.READ, "a", source="lab").record.source == "lab"
+    for role in (KeyRole.WRITE, KeyRole.ADMIN):
+        with pytest.raises(BadField), store.write() as tx:
+            keys.create(tx, role, "a", source="lab")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from datetime import timedelta
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,9 @@ from sqlalchemy import update
 from app.services.clips import jobs
 from app.services.imports import imports
 from app.services.library.library import Library
+from app.store import audit
 from app.store.database.ids import utc_now
+from app.store.database.tables import audit_log
 from app.store.database.tables import jobs as table
 from app.worker.expiry import Expiry
 from tests.libraries import settings_for
@@ -74,3 +77,23 @@ def test_deleted_data_leave_the_log_after_the_reader_has_ended(tmp_path: Path) -
     Expiry(lib).remove_if_due()
     assert log.stat().st_size == 0
     assert job_id.encode() not in (lib.settings.data_dir / "kinedex.sqlite3").read_bytes()
+
+
+def test_old_rows_of_the_audit_log_are_removed(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    lib = Library.open(settings_for(tmp_path, audit_retention_days=7))
+    for action in ("old", "new"):
+        with lib.store.write() as tx:
+            audit.add(tx, audit.Call(action))
+    long_ago = utc_now() - timedelta(days=8)
+    with lib.store.write() as tx:
+        old = update(audit_log).where(audit_log.c.action == "old")
+        tx.execute(old.values(at=long_ago))
+    with caplog.at_level(logging.INFO, logger="app.worker.expiry"):
+        Expiry(lib).remove_if_due()
+    with lib.store.read() as tx:
+        left = audit.list_page(tx, audit.AuditFilter()).items
+    assert [row.action for row in left] == ["new"]
+    assert "removed 1 rows of the audit log older than 7 days" in caplog.text
+    lib.close()

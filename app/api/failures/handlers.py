@@ -16,6 +16,7 @@ from starlette.types import Scope
 from app.api.failures.problems import (
     RETRY_AFTER_SECONDS,
     NotReadyYet,
+    RateLimited,
     TooBusy,
     problem,
     problem_of,
@@ -74,6 +75,8 @@ async def answer_failure(request: Request, error: Exception) -> Response:
 
 
 def _headers(failure: KinedexError) -> dict[str, str]:
+    if isinstance(failure, RateLimited):
+        return failure.headers
     if isinstance(failure, Unauthorized):
         return {"WWW-Authenticate": "Bearer"}
     if isinstance(failure, _TEMPORARY):

@@ -40,6 +40,25 @@ class TooBusy(KinedexError):
     code = "too_busy"
 
 
+class RateLimited(KinedexError):
+    """Too many calls; try again later.
+
+    retry_after: seconds; headers: further headers of the answer.
+    """
+
+    code = "rate_limited"
+
+    def __init__(
+        self,
+        detail: str | None = None,
+        *,
+        retry_after: int = 1,
+        headers: Mapping[str, str] | None = None,
+    ) -> None:
+        super().__init__(detail)
+        self.headers = {**(headers or {}), "Retry-After": str(retry_after)}
+
+
 class TooManyConnections(KinedexError):
     """Too many connections are open; try again shortly."""
 
@@ -97,6 +116,7 @@ STATUSES: dict[type[KinedexError], int] = {
     errors.StorageError: 500,
     errors.ConfigurationError: 500,
     KinedexError: 500,
+    RateLimited: 429,
     UnknownMethod: 501,
     errors.ClientLeft: CLIENT_LEFT,
     NotReadyYet: 503,

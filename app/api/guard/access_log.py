@@ -9,7 +9,7 @@ import uuid
 from starlette.datastructures import Headers
 from starlette.types import Scope
 
-from app.api.guard.callers import Caller
+from app.api.guard.callers import Caller, address_of
 from app.api.guard.methods import METHODS
 from app.logs import mask_keys
 
@@ -23,8 +23,6 @@ _HEXADECIMAL = re.compile(r"[0-9A-Fa-f.-]+")
 _PERSON = re.compile(r"(/persons/).+", re.DOTALL)
 MAX_PATH_LENGTH = 300
 """Logged characters of a path."""
-MAX_ADDRESS_LENGTH = 64
-"""Logged characters of a client's address. Behind a proxy, a header may hold any text."""
 
 
 def identity_of(scope: Scope) -> str:
@@ -44,7 +42,7 @@ def log_request(scope: Scope, status: int, seconds: float) -> None:
     public id of the API key, only for calls with a valid key; the key itself is never logged.
     """
     fields = {
-        "client": _address_of(scope),
+        "client": address_of(scope),
         "method": scope["method"] if scope["method"] in METHODS else "other",
         "path": _shown(scope["path"]),
         "status": status,
@@ -54,12 +52,6 @@ def log_request(scope: Scope, status: int, seconds: float) -> None:
     if caller is not None and caller.key_id is not None:
         fields["key_id"] = caller.key_id
     log.info("request", extra={"fields": fields})
-
-
-def _address_of(scope: Scope) -> str | None:
-    """The client's IP address; None for a client without one (a Unix socket)."""
-    client = scope.get("client")
-    return None if client is None else str(client[0])[:MAX_ADDRESS_LENGTH]
 
 
 def _shown(path: str) -> str:

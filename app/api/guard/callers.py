@@ -6,26 +6,46 @@ from dataclasses import dataclass
 
 from fastapi.security.utils import get_authorization_scheme_param
 from starlette.datastructures import Headers
+from starlette.types import Scope
 
 from app.errors import Forbidden, Unauthorized
 from app.services.library.library import Library
 from app.store import keys
 from app.store.database.engine import Tx
 from app.store.key_role import KeyRole
+from app.store.keys import KeyRecord
+
+MAX_ADDRESS_LENGTH = 64
+"""Characters of a client's address. Behind a proxy, a header may hold any text."""
 
 
 @dataclass(frozen=True, slots=True)
 class Caller:
     """The caller of one request.
 
-    role, key_id: of the valid key that was sent, None without a valid key; has_key: whether any
-    key was sent; is_free: keys are not required, so everything is allowed.
+    has_key: whether any key was sent; is_free: keys are not required, so everything is allowed;
+    address: of the client, None for a command on this machine; key: the valid key that was sent.
     """
 
-    role: KeyRole | None
     has_key: bool
     is_free: bool
-    key_id: str | None = None
+    address: str | None = None
+    key: KeyRecord | None = None
+
+    @property
+    def role(self) -> KeyRole | None:
+        """The role of the valid key that was sent."""
+        return None if self.key is None else self.key.role
+
+    @property
+    def key_id(self) -> str | None:
+        """The public id of the valid key that was sent."""
+        return None if self.key is None else self.key.id
+
+    @property
+    def source(self) -> str | None:
+        """The only source whose clips the caller may see; None if all."""
+        return None if self.key is None else self.key.source
 
     def require_key(self) -> None:
         """Raises Unauthorized if a key is required and the request has no valid key."""
@@ -42,15 +62,18 @@ class Caller:
             raise Forbidden(f"This needs a key with the role {role.value}.")
 
 
-def find_caller(lib: Library, given: str) -> Caller:
+def find_caller(lib: Library, given: str, address: str | None) -> Caller:
     """Find the caller by a key; `given` is empty without a key. Raises StorageError."""
     with lib.store.read() as tx:
-        if is_open(lib, tx):
-            return Caller(role=None, has_key=bool(given), is_free=True)
-        key = keys.verify(tx, given) if given else None
-    if key is None:
-        return Caller(role=None, has_key=bool(given), is_free=False)
-    return Caller(role=key.role, has_key=True, is_free=False, key_id=key.id)
+        is_free = is_open(lib, tx)
+        key = keys.verify(tx, given) if given and not is_free else None
+    return Caller(has_key=bool(given), is_free=is_free, address=address, key=key)
+
+
+def address_of(scope: Scope) -> str | None:
+    """The client's IP address; None for a client without one (a Unix socket)."""
+    client = scope.get("client")
+    return None if client is None else str(client[0])[:MAX_ADDRESS_LENGTH]
 
 
 def is_open(lib: Library, tx: Tx) -> bool:

@@ -48,7 +48,7 @@ class Connections:
 
     def enter(self, connection: Connection, address: str) -> bool:
         """Count a new connection as waiting. Returns False if there is no room for it."""
-        group = _group(address)
+        group = address_group(address)
         if self._counts.get(group, 0) >= self._limit_per_address:
             self._warn("client address", address)
             if not self._make_room(self._waiting_of.get(group)):
@@ -112,7 +112,7 @@ class Connections:
             log.info("last connection came from %s", address)
 
 
-def _group(address: str) -> str:
+def address_group(address: str) -> str:
     """The IPv4 address, or the network of the IPv6 address: both count as one address."""
     try:
         ip = ipaddress.ip_address(address.partition("%")[0])

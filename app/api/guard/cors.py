@@ -32,6 +32,8 @@ READ_HEADERS = (
     "Content-Disposition",
     "ETag",
     "Idempotency-Replayed",
+    "RateLimit",
+    "RateLimit-Policy",
     "Retry-After",
     "X-Frame-Rate",
     "X-Request-Id",

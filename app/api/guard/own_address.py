@@ -55,15 +55,21 @@ def refuse_other_pages(scope: Scope) -> None:
     """Raises Forbidden unless a page of the address that was called, or the user, calls.
 
     For calls that a cookie allows. The host may have any name here, and a proxy may have taken
-    TLS off, so that schemes are not compared.
+    TLS off, so that `http` and `https` are not told apart.
     """
     headers = Headers(scope=scope)
     sites = headers.getlist("sec-fetch-site")
-    hosts = [origin.partition("://")[2].lower() for origin in headers.getlist("origin")]
+    hosts = [_host_of(origin.lower()) for origin in headers.getlist("origin")]
     own = headers.get("host", "").lower()
     says = bool(sites or hosts) or scope["method"] in CHANGE_NOTHING
     if not says or not OWN_SITES.issuperset(sites) or (not sites and set(hosts) - {own}):
         raise Forbidden("With a cookie, only the pages of this address may call.")
+
+
+def _host_of(origin: str) -> str:
+    """The host and port of a page; a text that is no host if the origin is not one of a page."""
+    scheme, _, host = origin.partition("://")
+    return host if scheme in {"http", "https"} else f"not a page: {origin}"
 
 
 def _own_host(headers: Headers) -> str:

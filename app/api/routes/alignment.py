@@ -6,14 +6,14 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from app.api.deps import Lib, reads
+from app.api.deps import Lib, reads_source
 from app.api.guard.admission import heavy
 from app.api.openapi import ClipId, refusals
 from app.api.schemas.alignment import Alignment, AlignmentQuery
 from app.errors import ClipNotReady
 from app.services.comparison.alignment import align_clips
 
-router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads])
+router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads_source])
 
 
 @router.get("/alignment", dependencies=[heavy], responses=refusals(404, ClipNotReady))

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 
-from app.api.deps import Lib, reads
+from app.api.deps import Lib, reads_source
 from app.api.guard.admission import heavy
 from app.api.openapi import BINARY, ClipId, refusals
 from app.api.schemas.views import Descriptor, Motion, MotionQueryParameters
@@ -15,7 +15,7 @@ from app.api.validators import UNCHANGED, of_one_clip
 from app.errors import ClipNotReady
 from app.services.views import views
 
-router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads])
+router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads_source])
 
 _SHAPE = {
     "description": "`frames,joints,3`, with octet streams.",

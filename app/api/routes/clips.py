@@ -11,8 +11,9 @@ from starlette.background import BackgroundTask
 from starlette.datastructures import UploadFile
 
 from app.api.bodies import read_form, require_json, required
-from app.api.deps import Lib, reads, writes
+from app.api.deps import Lib, reads_source, writes
 from app.api.guard.admission import changes, quick
+from app.api.guard.audited import exported
 from app.api.openapi import BINARY, ClipId, body, refusals
 from app.api.queries import file_of
 from app.api.schemas.clips import Clip, ClipCreated, ClipForm, ClipList, ClipPatch, ClipQuery
@@ -84,7 +85,9 @@ def _recording(uploads: dict[str, UploadFile]) -> NewRecording | None:
     return None if sent is None else NewRecording(sent.file, sent.filename or "audio")
 
 
-@router.get("", dependencies=[reads, quick], response_model=ClipList, responses=refusals(404))
+@router.get(
+    "", dependencies=[reads_source, quick], response_model=ClipList, responses=refusals(404)
+)
 def list_clips(lib: Lib, query: Annotated[ClipQuery, Query()]) -> ClipList | Response:
     """List the clips that pass every filter. Repeat a label parameter to accept several values.
 
@@ -98,7 +101,7 @@ def list_clips(lib: Lib, query: Annotated[ClipQuery, Query()]) -> ClipList | Res
 
 @router.get(
     "/{clip_id}",
-    dependencies=[reads, quick],
+    dependencies=[reads_source, quick],
     response_model=Clip,
     responses={304: UNCHANGED, **refusals(404)},
 )
@@ -132,7 +135,7 @@ def delete_clip(lib: Lib, clip_id: ClipId) -> None:
 
 @router.get(
     "/{clip_id}/file",
-    dependencies=[reads, quick],
+    dependencies=[reads_source, exported, quick],
     response_class=FileResponse,
     responses={
         200: ORIGINAL,

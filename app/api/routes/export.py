@@ -10,8 +10,9 @@ from fastapi.responses import StreamingResponse
 
 from app.analysis.angles import definitions as angles
 from app.analysis.gait import parameters as gait
-from app.api.deps import Lib, reads
+from app.api.deps import Lib, reads_source
 from app.api.guard.admission import heavy
+from app.api.guard.audited import exported
 from app.api.openapi import BINARY, ClipId, refusals
 from app.api.pieces import Pieces
 from app.api.schemas.export import ExportQuery
@@ -20,7 +21,7 @@ from app.errors import ClipNotReady, NotEnoughKeyposes
 from app.services.views.export import export
 from app.services.views.export_format import ExportFormat
 
-router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads])
+router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads_source])
 
 MEDIA_TYPES = {
     ExportFormat.BVH: "application/octet-stream",
@@ -112,7 +113,7 @@ run, times that need the foot off are empty: the method does not find it there.
 @router.get(
     "/export",
     response_class=StreamingResponse,
-    dependencies=[of_one_clip, heavy],
+    dependencies=[exported, of_one_clip, heavy],
     description=DESCRIPTION,
     responses={
         200: {

@@ -7,7 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Query
 
 from app.api.bodies import require_json
-from app.api.deps import Lib, reads, writes
+from app.api.deps import Lib, reads_source, writes
 from app.api.guard.admission import heavy
 from app.api.openapi import ClipId, refusals
 from app.api.schemas.keyposes import KeyposeQuery, Keyposes, KeyposesNamed, NamedKeyposes
@@ -36,7 +36,10 @@ of the next fit then use these keyposes. `GET` shows them beside the keyposes th
 
 
 @router.get(
-    "", dependencies=[reads, heavy], responses=refusals(404, ClipNotReady), description=_FOUND
+    "",
+    dependencies=[reads_source, heavy],
+    responses=refusals(404, ClipNotReady),
+    description=_FOUND,
 )
 def get_keyposes(lib: Lib, clip_id: ClipId, query: Annotated[KeyposeQuery, Query()]) -> Keyposes:
     """A clip's keyposes."""

@@ -7,8 +7,9 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Query
 from fastapi.responses import StreamingResponse
 
-from app.api.deps import Lib, reads, writes
+from app.api.deps import Lib, reads, reads_source, writes
 from app.api.guard.admission import changes, quick
+from app.api.guard.audited import exported
 from app.api.openapi import refusals
 from app.api.path_parameters import register_label
 from app.api.schemas.base import PRINTABLE
@@ -34,10 +35,10 @@ DEFAULT_WORDS, DEFAULT_COMPLETIONS = 1000, 10
 
 
 LABEL = register_label()
-router = APIRouter(prefix="/v1", tags=["labels"], dependencies=[reads], responses=refusals(404))
+router = APIRouter(prefix="/v1", tags=["labels"], responses=refusals(404))
 
 
-@router.get("/persons", dependencies=[quick])
+@router.get("/persons", dependencies=[reads, quick])
 def list_persons(lib: Lib, query: Annotated[LabelPage, Query()]) -> NamedCounts:
     """Persons, with the number of clips of each."""
     page = labels.page(lib, LabelKind.PERSON, query.limit, query.cursor)
@@ -71,14 +72,14 @@ def forget_person(
     persons.forget_person(lib, name)
 
 
-@router.get("/tasks", dependencies=[quick])
+@router.get("/tasks", dependencies=[reads, quick])
 def list_tasks(lib: Lib, query: Annotated[LabelPage, Query()]) -> NamedCounts:
     """Tasks, with the number of clips of each."""
     page = labels.page(lib, LabelKind.TASK, query.limit, query.cursor)
     return NamedCounts.model_validate(page)
 
 
-@router.get("/words", dependencies=[quick])
+@router.get("/words", dependencies=[reads, quick])
 def list_words(lib: Lib, query: Annotated[WordListQuery, Query()]) -> NamedCounts:
     """Words by name, with numbers of clips; or completions of `q`, the likeliest first."""
     if query.q is None:
@@ -91,27 +92,27 @@ def list_words(lib: Lib, query: Annotated[WordListQuery, Query()]) -> NamedCount
     return NamedCounts.model_validate(page)
 
 
-@router.get("/sources", dependencies=[quick])
+@router.get("/sources", dependencies=[reads, quick])
 def list_sources(lib: Lib, query: Annotated[LabelPage, Query()]) -> NamedCounts:
     """Sources of clips, with the number of clips from each."""
     page = labels.page(lib, LabelKind.SOURCE, query.limit, query.cursor)
     return NamedCounts.model_validate(page)
 
 
-@router.get("/licenses", dependencies=[quick])
+@router.get("/licenses", dependencies=[reads, quick])
 def list_licenses(lib: Lib, query: Annotated[LabelPage, Query()]) -> NamedCounts:
     """Licenses, with the number of clips of each."""
     page = labels.page(lib, LabelKind.LICENSE, query.limit, query.cursor)
     return NamedCounts.model_validate(page)
 
 
-@router.get("/metadata", dependencies=[quick])
+@router.get("/metadata", dependencies=[reads, quick])
 def list_metadata(lib: Lib, query: Annotated[LabelPage, Query()]) -> MetadataKeys:
     """The keys of the metadata of clips, with the kinds and the most frequent values of each."""
     return MetadataKeys.model_validate(discovery.metadata(lib, query.limit, query.cursor))
 
 
-@router.get("/folders", dependencies=[quick])
+@router.get("/folders", dependencies=[reads, quick])
 def list_folders(lib: Lib, query: Annotated[FolderQuery, Query()]) -> FolderList:
     """The folders directly in a folder, with the number of clips in and below each.
 
@@ -123,7 +124,7 @@ def list_folders(lib: Lib, query: Annotated[FolderQuery, Query()]) -> FolderList
 
 @router.get(
     "/manifest.csv",
-    dependencies=[quick],
+    dependencies=[reads_source, exported, quick],
     response_class=StreamingResponse,
     responses={
         200: {

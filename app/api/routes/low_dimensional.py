@@ -6,7 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 
-from app.api.deps import Lib, reads
+from app.api.deps import Lib, reads_source
 from app.api.guard.admission import heavy
 from app.api.openapi import BINARY, ClipId, refusals
 from app.api.routes.clip_views import OCTET_ANSWER
@@ -22,7 +22,7 @@ from app.errors import ClipNotReady, NotEnoughKeyposes
 from app.services.views import low_dimensional
 from app.services.views.animations import animation_svg
 
-router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads])
+router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads_source])
 
 DESCRIPTION = """\
 The motion is projected onto the first K' principal axes of a few poses and then reconstructed

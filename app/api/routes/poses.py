@@ -8,7 +8,7 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Request, Response
 
 from app.api.bodies import is_multipart, read_form, read_json
-from app.api.deps import Lib, reads
+from app.api.deps import Lib, reads_source
 from app.api.guard.admission import heavy
 from app.api.openapi import body, refusals
 from app.api.queries import QUERY_FILES, source_of
@@ -34,7 +34,11 @@ async def _pose_query(request: Request) -> PoseQuery:
 
 @router.post(
     "/pose",
-    dependencies=[reads, Depends(_pose_query), heavy],  # takes a slot after the form has arrived
+    dependencies=[
+        reads_source,
+        Depends(_pose_query),
+        heavy,
+    ],  # a slot only after the form
     response_model=PoseHits,
     responses=refusals(400, 404, 413, 415, 503, 507, ClipNotReady),
     openapi_extra=body(

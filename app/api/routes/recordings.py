@@ -5,8 +5,9 @@ from __future__ import annotations
 from fastapi import APIRouter, Request
 from fastapi.responses import FileResponse
 
-from app.api.deps import Lib, reads, writes
+from app.api.deps import Lib, reads_source, writes
 from app.api.guard.admission import changes, quick
+from app.api.guard.audited import exported
 from app.api.openapi import AudioClipId, refusals
 from app.api.routes.clips import ORIGINAL, attachment
 from app.api.schemas.clips import Clip
@@ -18,7 +19,7 @@ router = APIRouter(prefix="/v1/clips", tags=["clips"])
 
 @router.get(
     "/{clip_id}/audio",
-    dependencies=[reads, quick],
+    dependencies=[reads_source, exported, quick],
     response_class=FileResponse,
     responses={
         200: ORIGINAL,

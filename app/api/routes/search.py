@@ -8,7 +8,7 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Request, Response
 
 from app.api.bodies import is_multipart, read_form, read_json, require_json
-from app.api.deps import Lib, reads
+from app.api.deps import Lib, reads_source
 from app.api.guard.admission import heavy
 from app.api.openapi import body, refusals
 from app.api.queries import QUERY_FILES, file_of, source_of
@@ -72,7 +72,11 @@ async def _motion_query(request: Request) -> MotionQuery:
 
 @router.post(
     "/motion",
-    dependencies=[reads, Depends(_motion_query), heavy],  # takes a slot after the form has arrived
+    dependencies=[
+        reads_source,
+        Depends(_motion_query),
+        heavy,
+    ],  # a slot only after the form
     responses=refusals(400, 404, 413, 415, 503, 507, ClipNotReady, ModelNotFitted),
     response_model=MotionHits,
     openapi_extra=body(
@@ -96,7 +100,7 @@ def search_motion(
 
 @router.post(
     "/words",
-    dependencies=[reads, Depends(require_json), heavy],
+    dependencies=[reads_source, Depends(require_json), heavy],
     response_model=WordHits,
     responses=refusals(400, 404, 413, 415, ModelNotFitted, NotEnoughLabels),
 )
@@ -118,7 +122,7 @@ async def _composed_query(request: Request) -> ComposedQuery:
 
 @router.post(
     "",
-    dependencies=[reads, Depends(_composed_query), heavy],
+    dependencies=[reads_source, Depends(_composed_query), heavy],
     responses=refusals(400, 404, 413, 415, 503, 507, ClipNotReady, ModelNotFitted, NotEnoughLabels),
     response_model=ComposedHits,
     openapi_extra=body(

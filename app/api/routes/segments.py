@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 
-from app.api.deps import Lib, reads
+from app.api.deps import Lib, reads_source
 from app.api.guard.admission import heavy
 from app.api.openapi import ClipId, refusals
 from app.api.schemas.segments import SegmentList
 from app.errors import ClipNotReady
 from app.services.views.segments import list_segments
 
-router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads])
+router = APIRouter(prefix="/v1/clips/{clip_id}", tags=["clips"], dependencies=[reads_source])
 
 
 @router.get("/segments", dependencies=[heavy], responses=refusals(404, ClipNotReady))

@@ -5,10 +5,10 @@ from __future__ import annotations
 from fastapi import APIRouter, Depends, Request, Response
 
 from app.api.bodies import require_json
-from app.api.deps import Lib
 from app.api.guard.admission import at_once, quick
-from app.api.guard.callers import Caller, find_caller
+from app.api.guard.callers import Caller, address_of
 from app.api.guard.own_address import refuse_other_pages
+from app.api.guard.rates import RateLimits
 from app.api.guard.sessions import COOKIE, Sessions
 from app.api.openapi import refusals
 from app.api.schemas.session import Session, SignIn
@@ -23,13 +23,15 @@ async def get_session(request: Request) -> Session:
 
 
 @router.post("", dependencies=[Depends(require_json), quick], responses=refusals(400, 413, 415))
-def sign_in(request: Request, lib: Lib, sent: SignIn, response: Response) -> Session:
+def sign_in(request: Request, sent: SignIn, response: Response) -> Session:
     """Sign in: the answer sets a cookie that stands for the key until it is signed out, the
-    service restarts, or 12 hours pass without a call. Only pages of this service can use it.
+    service restarts, the key expires, or 12 hours pass without a call. Only pages of this service
+    can use it. After too many wrong keys from one address, the answer is 429 for a while.
 
     Where no keys are needed, send an empty key: the answer is that of `GET`."""
     refuse_other_pages(request.scope)
-    caller = find_caller(lib, sent.key)
+    limits: RateLimits = request.app.state.limits
+    caller = limits.identify(sent.key, address_of(request.scope))
     caller.require_key()
     if caller.is_free:
         return _session(caller)
@@ -54,7 +56,13 @@ async def sign_out(request: Request, response: Response) -> None:
 
 
 def _session(caller: Caller) -> Session:
-    return Session(keys_needed=not caller.is_free, role=caller.role)
+    expires_at = None if caller.key is None else caller.key.expires_at
+    return Session(
+        keys_needed=not caller.is_free,
+        role=caller.role,
+        source=caller.source,
+        expires_at=expires_at,
+    )
 
 
 def _home(request: Request) -> str:

@@ -8,7 +8,8 @@ from app import __version__
 from app.api.deps import Lib, reads
 from app.api.guard.admission import quick
 from app.api.openapi import refusals
-from app.api.schemas.status import DiskStatus, QueueStatus, Status
+from app.api.schemas.status import DiskStatus, IsolationStatus, QueueStatus, Status
+from app.services.children import sandbox
 from app.services.library.status import status_of
 
 router = APIRouter(prefix="/v1/status", tags=["service"])
@@ -24,4 +25,5 @@ def get_status(lib: Lib) -> Status:
         clips=dict(found.clips),
         jobs=[QueueStatus.model_validate(one) for one in found.jobs],
         disk=DiskStatus.model_validate(found.disk),
+        isolation=IsolationStatus.model_validate(sandbox.status()),
     )

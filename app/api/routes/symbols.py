@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request, Response
 
-from app.api.deps import Lib, reads
+from app.api.deps import Lib, reads_source
 from app.api.guard.admission import heavy
 from app.api.openapi import ClipId, refusals
 from app.api.routes.clip_views import OCTET_ANSWER
@@ -14,7 +14,7 @@ from app.api.validators import UNCHANGED, of_one_clip
 from app.errors import ClipNotReady
 from app.services.views import symbol_motion
 
-router = APIRouter(tags=["clips"], dependencies=[reads])
+router = APIRouter(tags=["clips"], dependencies=[reads_source])
 
 
 @router.get(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from datetime import datetime
+
 from pydantic import Field
 
 from app.api.schemas.base import Incoming, Outgoing
@@ -22,3 +24,7 @@ class Session(Outgoing):
         description="Of the caller's valid key; null without one. Where no keys are needed, "
         "everything is allowed."
     )
+    source: str | None = Field(
+        description="The only source whose clips the key may read; null: all clips."
+    )
+    expires_at: datetime | None = Field(description="When the key expires; null: never.")

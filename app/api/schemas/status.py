@@ -23,6 +23,14 @@ class DiskStatus(Outgoing):
     total: int = Field(description="Bytes.")
 
 
+class IsolationStatus(Outgoing):
+    """What the kernel of the API's machine keeps from processes that read uploaded files."""
+
+    files: bool = Field(description="Other files than the one that they read.")
+    network: bool
+    processes: bool = Field(description="Starting other processes.")
+
+
 class Status(Outgoing):
     """What the library holds, what waits, and how full its disk is."""
 
@@ -31,3 +39,4 @@ class Status(Outgoing):
     clips: dict[str, int] = Field(description="Number of clips by state.")
     jobs: list[QueueStatus] = Field(description="Open jobs by kind and state, the oldest first.")
     disk: DiskStatus
+    isolation: IsolationStatus

@@ -36,7 +36,7 @@ REPAIR = (
 
 
 def check_machine(context: typer.Context) -> Iterator[Finding]:
-    """The settings, the data directory, the database, the files, the worker, port and extras."""
+    """Settings, data directory, database, files, worker, port, isolation and extras."""
     try:
         settings = settings_of(context)
     except ConfigurationError as failure:
@@ -49,6 +49,7 @@ def check_machine(context: typer.Context) -> Iterator[Finding]:
         yield check_disk(shutil.disk_usage(settings.data_dir).free)
         yield from _check_library(settings)
     yield _check_address(settings)
+    yield _check_isolation()
     yield from _check_extras()
 
 
@@ -151,6 +152,17 @@ def _check_address(settings: Settings) -> Finding:
         advice = "If Kinedex does not run, choose another port: KINEDEX_PORT or --port."
         return note("port", found, advice)
     return fine("port", f"{address} is free: no service runs there")
+
+
+def _check_isolation() -> Finding:
+    from app.services.children import sandbox
+
+    missing = sandbox.status().missing
+    if missing:
+        found = f"the kernel does not keep analysis processes from {', '.join(missing)}"
+        advice = "Linux 6.12 or newer can do it; a container must allow Landlock and seccomp."
+        return note("isolation", found, advice)
+    return fine("isolation", "analysis processes have no other files, network or processes")
 
 
 def _check_extras() -> Iterator[Finding]:

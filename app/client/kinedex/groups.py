@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from kinedex.calls import alignment as calls_alignment
+from kinedex.calls import audit as calls_audit
 from kinedex.calls import clip_views as calls_clip_views
 from kinedex.calls import clips as calls_clips
 from kinedex.calls import evaluations as calls_evaluations
@@ -131,6 +132,7 @@ class Studies(Group[SenderType]):
 class Service(Group[SenderType]):
     """The service itself."""
 
+    audit = ListMethod(calls_audit.list_audit)
     status = CallMethod(calls_status.get_status)
     session = CallMethod(calls_session.get_session)
     sign_in = CallMethod(calls_session.sign_in)

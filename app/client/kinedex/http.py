@@ -18,7 +18,7 @@ TIMEOUT = httpx2.Timeout(120.0, connect=10.0)
 RETRIES = 3
 MAX_RETRY_S = 30.0
 """The longest pause before a call is sent again, seconds."""
-BUSY = 503
+BUSY, LIMITED = 503, 429
 
 
 def options(url: str, api_key: str | None, extra: dict[str, Any]) -> dict[str, Any]:
@@ -47,10 +47,13 @@ def request_of(
 
 def pause_before_retry(response: httpx2.Response, call: Call[Any], attempt: int) -> float | None:
     """Seconds to wait before the call is sent again; None if it must not be sent again."""
-    if response.status_code != BUSY or attempt >= RETRIES or not is_repeatable(call.files):
+    status = response.status_code
+    if status not in {BUSY, LIMITED} or attempt >= RETRIES or not is_repeatable(call.files):
         return None
-    after = failure_of(BUSY, b"", response.headers.get("Retry-After")).retry_after
-    return None if after is None else min(after, MAX_RETRY_S)
+    after = failure_of(status, b"", response.headers.get("Retry-After")).retry_after
+    if after is None or (status == LIMITED and after > MAX_RETRY_S):
+        return None
+    return min(after, MAX_RETRY_S)
 
 
 def answer_of(response: httpx2.Response, call: Call[Any]) -> Any:

@@ -14,6 +14,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
+from app.formats.csv.formulas import guarded
 from app.numerics.arrays import FloatArray
 
 Cell = str | int | float | bool | None
@@ -24,7 +25,6 @@ DECIMALS = 6
 TIME = "time_s"
 LINE_END = "\r\n"
 BLOCK_ROWS = 1024
-_FORMULA_STARTS = ("=", "+", "-", "@")
 
 
 def csv_table(columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> Iterator[bytes]:
@@ -93,6 +93,4 @@ def _text(cell: Cell) -> str:
 
 def _harmless(text: str) -> str:
     """A text that no spreadsheet takes for a formula."""
-    if isinstance(text, _Number) or not text.startswith(_FORMULA_STARTS):
-        return text
-    return f"'{text}"
+    return text if isinstance(text, _Number) else guarded(text)

@@ -20,6 +20,7 @@ from app.search.ranking.ranking import IdArray
 from app.store.clips.filter import ClipFilter, is_in_folder
 from app.store.clips.index_feed import IndexedClip
 from app.store.clips.measures import FOUND
+from app.store.clips.visibility import visible_source
 
 NAMED = ("person", "task", "license", "source", "folder")
 
@@ -124,7 +125,7 @@ class LabelView:
     labels: Labels
 
     def mask(self, clip_filter: ClipFilter, exclude: Iterable[str] = ()) -> BoolArray:
-        """(n,) whether each clip passes a filter and is not excluded.
+        """(n,) whether each clip passes a filter, is visible (`visibility`) and is not excluded.
 
         The filter's state and name are ignored: every clip here is ready.
         """
@@ -139,6 +140,9 @@ class LabelView:
             mask &= ~_any_of(self.coded[name], codes)
         for condition in clip_filter.metadata:
             mask &= self.labels.metadata.mask(condition, len(mask))
+        source = visible_source()
+        if source is not None:
+            mask &= _any_of(self.coded["source"], self.labels.named["source"].codes([source]))
         for clip_id in exclude:
             mask[self._numbers_of(clip_id)] = False
         return mask

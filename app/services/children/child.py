@@ -7,7 +7,7 @@ import os
 import signal
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
@@ -17,7 +17,9 @@ from typing import Any, Self
 
 from app.errors import AnalysisCrashed, AnalysisInterrupted
 from app.kinedex_error import KinedexError
+from app.services.children import given_files
 from app.services.children.processes import child_context, die_with_parent, one_at_a_time
+from app.services.children.sandbox import limit_cpu
 
 START_TRIES = 5
 """The server that forks children may be killed; the next try starts another one."""
@@ -85,6 +87,16 @@ class Answer:
     failure: BaseException | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Task:
+    """Work for a child. seconds: its time limit; files: paths of the files that it may open."""
+
+    work: Callable[..., Any]
+    arguments: tuple[Any, ...]
+    seconds: float | None = None
+    files: tuple[str, ...] = ()
+
+
 class Child:
     """A child process. It and its parent have the two ends of one pipe, which no other has."""
 
@@ -112,15 +124,17 @@ class Child:
                 theirs.close()
         raise ChildEnded(None)
 
-    def do(
-        self, work: Callable[..., Any], arguments: tuple[Any, ...], seconds: float | None
-    ) -> Answer:
-        """Do one task in the child. Raises ChildEnded, and TimeoutError after `seconds`."""
+    def do(self, task: Task) -> Answer:
+        """Do one task in the child. Raises ChildEnded, and TimeoutError after `task.seconds`.
+
+        Raises OSError if a file of the task cannot be opened.
+        """
         self.tasks += 1
-        self._begin(work, arguments)
+        with given_files.opened(task.files) as descriptors:
+            self._begin(task, descriptors)
         kills = _memory_kills()
         try:
-            failure, value = self._receive(seconds)
+            failure, value = self._receive(task.seconds)
         except TimeoutError:
             self.kill()
             raise
@@ -128,10 +142,11 @@ class Child:
             raise self._as_end(memory_was_short=_memory_kills() > kills) from None
         return Answer(value, failure)
 
-    def _begin(self, work: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
+    def _begin(self, task: Task, descriptors: Sequence[int]) -> None:
         """Wait until the child has taken the task. Raises ChildEnded."""
         try:
-            self._pipe.send((work, arguments))
+            self._pipe.send(task)
+            given_files.send(self._pipe, descriptors, self._process.pid or 0)
             self._receive(MAX_BEGIN_S)
         except TimeoutError:
             self.kill()
@@ -186,13 +201,15 @@ class Child:
 def _serve(pipe: Connection, prepare: Callable[..., None], arguments: tuple[Any, ...]) -> None:
     """The loop of the child: do tasks until the pipe is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C must stop the parent, not the child
-    die_with_parent()
     prepare(*arguments)
+    die_with_parent()  # after `prepare`: a sandbox holds only for the threads that start after it
     with suppress(EOFError):
         while True:
-            work, task_arguments = pipe.recv()
-            pipe.send("begun")
-            _answer(pipe, work, task_arguments)
+            task: Task = pipe.recv()
+            limit_cpu(task.seconds)
+            with given_files.received(pipe, task.files):
+                pipe.send("begun")
+                _answer(pipe, task.work, task.arguments)
 
 
 def _answer(pipe: Connection, work: Callable[..., Any], arguments: tuple[Any, ...]) -> None:

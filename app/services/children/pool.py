@@ -14,13 +14,13 @@ from __future__ import annotations
 
 import threading
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future, InvalidStateError
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
-from app.services.children.child import Answer, Child, ChildEnded
+from app.services.children.child import Answer, Child, ChildEnded, Task
 
 _Result = TypeVar("_Result")
 
@@ -36,12 +36,10 @@ class TaskTimedOut(Exception):
 
 
 @dataclass(eq=False, slots=True)
-class _Task:
-    """Work to do in a child; is_alone: do it while no other task of the pool runs."""
+class _Submitted:
+    """A task for a child; is_alone: do it while no other task of the pool runs."""
 
-    work: Callable[..., Any]
-    arguments: tuple[Any, ...]
-    seconds: float | None
+    task: Task
     is_alone: bool
     future: Future[Any] = field(default_factory=Future)
     child: Child | None = None
@@ -57,7 +55,7 @@ class ChildPool:
         self._size = size
         self._prepare, self._arguments = prepare, arguments
         self._changed = threading.Condition()
-        self._waiting: deque[_Task] = deque()
+        self._waiting: deque[_Submitted] = deque()
         self._busy = 0
         self._is_one_alone = False
         self._is_closed = False
@@ -70,14 +68,17 @@ class ChildPool:
         *arguments: Any,
         seconds: float | None = None,
         is_alone: bool = False,
+        files: Sequence[str] = (),
     ) -> Future[_Result]:
         """Begin a task. Its future gets the result of `work`, or the error that it raised.
 
         seconds: time limit; after it the child is killed and the future gets TaskTimedOut; None:
-        no limit. If the child dies, the future gets ChildEnded. Canceling the future kills the
-        child, even while it works. Raises RuntimeError if the pool is closed.
+        no limit. files: paths of files that the task can open by `given_files.open_given`; the
+        future gets the OSError if one cannot be opened. If the child dies, the future gets
+        ChildEnded. Canceling the future kills the child, even while it works. Raises RuntimeError
+        if the pool is closed.
         """
-        task = _Task(work, arguments, seconds, is_alone)
+        task = _Submitted(Task(work, arguments, seconds, tuple(files)), is_alone)
         with self._changed:
             if self._is_closed:
                 raise RuntimeError("The pool is closed.")
@@ -121,7 +122,7 @@ class ChildPool:
         if child is not None:
             self._drop(child)
 
-    def _next(self) -> _Task | None:
+    def _next(self) -> _Submitted | None:
         """Wait for the next task that may begin. Returns None if the pool is closed."""
         with self._changed:
             while not self._is_closed:
@@ -132,10 +133,10 @@ class ChildPool:
                 self._changed.wait()
         return None
 
-    def _may_begin(self, task: _Task) -> bool:
+    def _may_begin(self, task: _Submitted) -> bool:
         return self._busy == 0 if task.is_alone else not self._is_one_alone
 
-    def _do(self, task: _Task, child: Child | None) -> Child | None:
+    def _do(self, task: _Submitted, child: Child | None) -> Child | None:
         """Do a task in a child; returns the child if it is still alive."""
         # The future stays pending while the child works: a running future cannot be canceled.
         task.future.add_done_callback(lambda _: self._kill_if_cancelled(task))
@@ -150,6 +151,8 @@ class ChildPool:
                 child = None
                 if not is_last_try and isinstance(failure, ChildEnded) and not failure.had_begun:
                     continue  # the child died before it took the task: another child takes it
+                _end(task.future, failure)
+            except OSError as failure:  # a file of the task cannot be opened
                 _end(task.future, failure)
             else:
                 _end(task.future, answer.failure, answer.value)
@@ -168,18 +171,18 @@ class ChildPool:
             child = None
         return child or self._new_child()
 
-    def _run(self, task: _Task, child: Child) -> Answer:
+    def _run(self, task: _Submitted, child: Child) -> Answer:
         with self._changed:
             task.child = child
         try:
-            return child.do(task.work, task.arguments, task.seconds)
+            return child.do(task.task)
         except TimeoutError:
             raise TaskTimedOut from None
         finally:
             with self._changed:
                 task.child = None  # a late cancellation must not kill the child's next task
 
-    def _kill_if_cancelled(self, task: _Task) -> None:
+    def _kill_if_cancelled(self, task: _Submitted) -> None:
         with self._changed:
             if task.future.cancelled() and task.child is not None:
                 task.child.kill()

@@ -7,11 +7,12 @@ libraries.
 
 from __future__ import annotations
 
+import fcntl
 import multiprocessing
 import multiprocessing.connection
 import multiprocessing.context
 import os
-import resource
+import signal
 import sys
 import threading
 import types
@@ -93,23 +94,25 @@ def log_like_parent(level: str) -> None:
 def die_with_parent() -> None:
     """Make this child process exit at once when its parent has ended in any way.
 
-    A thread waits on the pipe that the parent keeps open. (Linux's PR_SET_PDEATHSIG does not fit:
-    it also kills the child when the *thread* that started it ends, and threads of requests end.)
+    The parent keeps a pipe open. When it ends, the kernel sends SIGIO, which ends the child even if
+    it is inside compiled code; a thread does the same where pipes send no signals. (Linux's
+    PR_SET_PDEATHSIG does not fit: it kills the child when the server of children ends, and they
+    work on without it.)
     """
     parent = multiprocessing.parent_process()
-    if parent is not None:
-        threading.Thread(target=_exit_after, args=(parent.sentinel,), daemon=True).start()
+    if parent is None:
+        return
+    threading.Thread(target=_exit_after, args=(parent.sentinel,), daemon=True).start()
+    if hasattr(os, "O_ASYNC"):
+        signal.signal(signal.SIGIO, signal.SIG_DFL)
+        fcntl.fcntl(parent.sentinel, fcntl.F_SETOWN, os.getpid())
+        flags = fcntl.fcntl(parent.sentinel, fcntl.F_GETFL)
+        fcntl.fcntl(parent.sentinel, fcntl.F_SETFL, flags | os.O_ASYNC)
 
 
 def _exit_after(sentinel: int) -> None:
     multiprocessing.connection.wait([sentinel])
     os._exit(1)
-
-
-def limit_memory(memory_mb: int) -> None:
-    """Limit the address space of this process to `memory_mb` MB, libraries included."""
-    limit = memory_mb * 2**20
-    resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
 
 
 @contextmanager

@@ -16,6 +16,7 @@ from app.services import clip_fields, fields
 from app.services.clips.merging import OnConflict, merge
 from app.services.clips.recordings import NewRecording, attached, stage
 from app.services.library.library import Library
+from app.store import audit
 from app.store.clips import listing as clip_listing
 from app.store.clips import repository as stored
 from app.store.clips.filter import ClipFilter
@@ -148,6 +149,7 @@ def add(
     Conflict, which must undo the transaction.
     """
     added: AddResult = stored.add_or_get(tx, new)
+    audit.note(clip_id=added.clip.id)
     if added.outcome is AddOutcome.ADDED:
         return Created(added.clip, enqueue_ingest(tx, added.clip.id, priority), is_new=True)
     merged = merge(added.clip, new, on_conflict, paths)
@@ -256,6 +258,7 @@ def update_clip(lib: Library, clip_id: str, changes: Mapping[str, Any]) -> ClipR
         with lib.store.files.open(get_clip(lib, clip_id).sha256) as file:
             check_stack_belongs(_format_of(file))
     with lib.store.write() as tx:
+        audit.note(fields=sorted(tidy))
         before = stored.get(tx, clip_id)
         after = _changed(tx, before, tidy)
         if after.analysis_input == before.analysis_input:

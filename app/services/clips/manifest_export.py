@@ -1,7 +1,7 @@
 """The labels of a library as a table that an import reads again: manifest.csv.
 
 Each row is a clip. The columns are those that a manifest has (`app.services.imports.manifest`),
-except `audio`, which names a file that lies beside the motion.
+except `audio`, which names a file that lies beside the motion. No cell is a formula (`formulas`).
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import csv
 import io
 from collections.abc import Iterator, Sequence
 
+from app.formats.csv.formulas import guarded
 from app.services import clip_fields
 from app.services.library.library import Library
 from app.store.clips import keypose_annotations
@@ -46,12 +47,17 @@ def _rows(tx: Tx, ids: Sequence[str], keys: Sequence[str]) -> Iterator[list[str]
     keyposes = keypose_annotations.get_many(tx, ids)
     for clip in clips.get_many(tx, ids).values():
         yield [
-            clip.path or clip.file_name,
-            *(_cell(getattr(clip, name)) for name in LABELS),
+            guarded(clip.path or clip.file_name),
+            *(guarded(_cell(getattr(clip, name))) for name in LABELS),
             *(_cell(_hint(clip, name)) for name in HINTS),
             _cell(keyposes.get(clip.id)),
-            *(as_cell(clip.metadata[key]) if key in clip.metadata else "" for key in keys),
+            *(_metadata_cell(clip, key) for key in keys),
         ]
+
+
+def _metadata_cell(clip: ClipRecord, key: str) -> str:
+    value = clip.metadata.get(key, "")
+    return guarded(as_cell(value)) if isinstance(value, str) else as_cell(value)
 
 
 def _hint(clip: ClipRecord, name: str) -> object:

@@ -19,7 +19,7 @@ from app.services.clips.anonymize import NameRemover
 from app.services.library.fitted_models import ModelKind, holds_persons
 from app.services.library.library import Library
 from app.services.training.models import enqueue_fit
-from app.store import evaluations, keyed_calls, models
+from app.store import audit, evaluations, keyed_calls, models
 from app.store.clips import labels
 from app.store.clips import repository as clips
 from app.store.database.engine import Tx
@@ -45,7 +45,9 @@ def _forget(tx: Tx, person: str) -> JobRecord:
         raise NotFound(
             "No clip carries this person.", places=[Place("name", "is not in the library")]
         )
-    traces.remove_name(tx, person, clips.forget_person(tx, person))
+    of_person = clips.forget_person(tx, person)
+    traces.remove_name(tx, person, of_person)
+    audit.note(clips=len(of_person))
     models.remove(tx, _HOLDING_PERSONS)
     evaluations.remove_where(tx, NameRemover(person).holds_name)
     keyed_calls.forget_answers(tx)

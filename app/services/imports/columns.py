@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 
 from app.errors import BadField
+from app.formats.csv.formulas import unguarded
 from app.services import clip_fields
 from app.store.clips.record import META
 
@@ -69,7 +70,7 @@ class Columns:
 
 
 def _cell(cells: Sequence[str], index: int) -> str:
-    return cells[index].strip() if index < len(cells) else ""
+    return unguarded(cells[index].strip()) if index < len(cells) else ""
 
 
 def metadata_key(name: str, known: Collection[str]) -> str:

@@ -1,7 +1,8 @@
 """Reading and analyzing files in processes that can be killed.
 
 A file from outside is parsed in a child process with a limit on time and memory, so that
-hostile or huge content makes one clip fail and never stops the service.
+hostile or huge content makes one clip fail and never stops the service. The child can do nothing
+else (`app.services.children.sandbox`): the parent opens the files for it.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import logging
 import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -28,8 +30,10 @@ from app.errors import (
 from app.kinedex_error import KinedexError, Place
 from app.logs import level_of_process
 from app.services.children.child import ChildEnded
+from app.services.children.given_files import open_given
 from app.services.children.pool import ChildPool, TaskTimedOut
-from app.services.children.processes import limit_memory, log_like_parent, stderr_silenced
+from app.services.children.processes import log_like_parent, stderr_silenced
+from app.services.children.sandbox import Sandbox, status
 from app.store.files.hash_check import read_whole
 
 if TYPE_CHECKING:
@@ -71,6 +75,11 @@ class AnalysisRequest:
     audio_offset: float | None = None
     for_search: bool = False
 
+    def files(self) -> tuple[str, ...]:
+        """The paths of its files, each once."""
+        paths = (self.path, self.skeleton_path, self.audio_path)
+        return tuple(dict.fromkeys(path for path in paths if path is not None))
+
 
 @dataclass(frozen=True, slots=True)
 class Limits:
@@ -85,8 +94,12 @@ class Limits:
 class AnalysisPool:
     """Child processes that analyze files, `size` at a time; they start with the first request."""
 
-    def __init__(self, limits: Limits, *, size: int = 1) -> None:
+    def __init__(self, limits: Limits, *, size: int = 1, cache: Path | None = None) -> None:
+        """cache: a folder for code that libraries compile, unless NUMBA_CACHE_DIR names one."""
         self.limits = limits
+        self._sandbox = Sandbox.of_this_program(cache)
+        self._has_folders = False
+        _warn_if_open()
         self._size = size
         self._lock = threading.Lock()
         self._pool = self._new_pool()
@@ -127,8 +140,16 @@ class AnalysisPool:
         is_alone: bool = False,
     ) -> concurrent.futures.Future[_Result]:
         with self._lock:
+            if not self._has_folders:
+                self._sandbox.make_folders()
+                self._has_folders = True
             return self._pool.submit(
-                work, request, self.limits, seconds=self.limits.seconds, is_alone=is_alone
+                work,
+                request,
+                self.limits,
+                seconds=self.limits.seconds,
+                is_alone=is_alone,
+                files=request.files(),
             )
 
     def outcome(self, future: concurrent.futures.Future[_Result]) -> _Result:
@@ -176,7 +197,8 @@ class AnalysisPool:
         self._pool.close()
 
     def _new_pool(self) -> ChildPool:
-        return ChildPool(self._size, _prepare, self.limits.memory_mb, level_of_process())
+        level, memory_mb = level_of_process(), self.limits.memory_mb
+        return ChildPool(self._size, _prepare, self._sandbox, memory_mb, level)
 
 
 def analyze_file(request: AnalysisRequest, limits: Limits) -> Analysis:
@@ -214,10 +236,10 @@ def analyze_file(request: AnalysisRequest, limits: Limits) -> Analysis:
 
 
 def _onsets(audio_path: str | None) -> tuple[Onsets | None, tuple[Caution, ...]]:
-    return (None, ()) if audio_path is None else _listen(Path(audio_path))
+    return (None, ()) if audio_path is None else _listen(audio_path)
 
 
-def _listen(path: Path) -> tuple[Onsets | None, tuple[Caution, ...]]:
+def _listen(path: str) -> tuple[Onsets | None, tuple[Caution, ...]]:
     """The onsets of a recording, and cautions.
 
     A recording that cannot be read gives None and a caution: it must not make the clip fail.
@@ -226,7 +248,7 @@ def _listen(path: Path) -> tuple[Onsets | None, tuple[Caution, ...]]:
     from app.formats.audio.reader import read_audio
     from app.motion.skeleton.recording import Caution
 
-    content = read_whole(path)
+    content = _read(path)
     try:
         with stderr_silenced():
             sound = read_audio(content)
@@ -252,13 +274,18 @@ def read_file(request: AnalysisRequest, limits: Limits) -> Recording:
 
     content = request.content
     if content is None:
-        content = read_whole(Path(request.path or ""))
+        content = _read(request.path or "")
     skeleton = request.skeleton
     if request.skeleton_path is not None:
-        skeleton = read_whole(Path(request.skeleton_path))
+        skeleton = _read(request.skeleton_path)
     recording = read_recording(content, skeleton, request.stack)
     _check_size(recording, limits)
     return recording
+
+
+def _read(path: str) -> bytes:
+    with open_given(path) as file:
+        return read_whole(file, Path(path).name)
 
 
 def _check_size(recording: Recording, limits: Limits) -> None:
@@ -272,7 +299,14 @@ def _check_size(recording: Recording, limits: Limits) -> None:
             raise TooLarge(f"The motion has more than {limit} {noun}.", places=[place])
 
 
-def _prepare(memory_mb: int, level: str) -> None:
+def _prepare(sandbox: Sandbox, memory_mb: int, level: str) -> None:
     """Set up a child process before its first task."""
     log_like_parent(level)
-    limit_memory(memory_mb)
+    sandbox.enter(memory_mb)
+
+
+@cache
+def _warn_if_open() -> None:
+    missing = status().missing
+    if missing:
+        _log.warning("this kernel does not keep analysis processes from %s", ", ".join(missing))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Self
 
 from app.analysis.descriptors.windows import WIDTH, WINDOW_SCALES
@@ -78,7 +79,7 @@ class Library:
             models=FittedModels(),
             word_scores=ModelRows(),
             symbol_points=ModelRows(),
-            pool=AnalysisPool(query_limits(settings)),
+            pool=AnalysisPool(query_limits(settings), cache=cache_folder(settings)),
             windows={
                 scale.name: VectorIndex(layout=parts_layout(scale.vectors, scale.spans, WIDTH))
                 for scale in WINDOW_SCALES
@@ -94,6 +95,11 @@ class Library:
         """Stop the analysis processes and close the database connections."""
         self.pool.close()
         self.store.close()
+
+
+def cache_folder(settings: Settings) -> Path:
+    """The folder for code that libraries compile; analysis processes can write to it."""
+    return settings.data_dir / "cache"
 
 
 def query_limits(settings: Settings) -> Limits:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from sqlalchemy import ColumnElement, Select, String, and_, cast, func, or_, select
 
+from app.store.clips import visibility
 from app.store.clips.measures import MEASURES
 from app.store.clips.record import ClipState
 from app.store.database.tables import clip_metadata, clip_words, clips
@@ -101,7 +102,7 @@ class ClipFilter:
 
 
 def condition(filter: ClipFilter, clip_id: ColumnElement[str] = clips.c.id) -> ColumnElement[bool]:
-    """The filter as a WHERE clause over `clips`.
+    """The filter as a WHERE clause over `clips`; clips that are not visible do not pass.
 
     clip_id: `clips.c.id`, or an expression of the same value: the ids of `id_sets` contain it.
     """
@@ -115,7 +116,8 @@ def condition(filter: ClipFilter, clip_id: ColumnElement[str] = clips.c.id) -> C
         # autoescape: % and _ in `q` are plain characters, not wildcards.
         terms.append(clips.c.searched.contains(filter.q.casefold(), autoescape=True))
     refused = (_holders(one) for one in filter.metadata if one.is_negated)
-    return and_(True, *terms, *_folder_terms(filter), *map(clips.c.id.not_in, refused))
+    terms.extend(map(clips.c.id.not_in, refused))
+    return and_(True, visibility.is_visible(), *terms, *_folder_terms(filter))
 
 
 def id_sets(filter: ClipFilter) -> list[Select[tuple[str]]]:

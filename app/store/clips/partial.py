@@ -11,6 +11,7 @@ from typing import Any
 
 from sqlalchemy import select
 
+from app.store.clips import visibility
 from app.store.clips.measures import MEASURES
 from app.store.clips.repository import in_batches
 from app.store.database.engine import Tx
@@ -44,5 +45,7 @@ def read(tx: Tx, clip_ids: Collection[str], names: Collection[str]) -> dict[str,
     return {
         row["id"]: PartialClip(dict(row))
         for batch in in_batches(clip_ids)
-        for row in tx.execute(select(*columns).where(clips.c.id.in_(batch))).mappings()
+        for row in tx.execute(
+            visibility.of_visible(select(*columns).where(clips.c.id.in_(batch)))
+        ).mappings()
     }

@@ -10,7 +10,7 @@ from sqlalchemy import RowMapping, bindparam, delete, insert, select, update
 
 from app.errors import ClipNotFound
 from app.kinedex_error import Place
-from app.store.clips import clip_metadata
+from app.store.clips import clip_metadata, visibility
 from app.store.clips import versions as library
 from app.store.clips.record import (
     AUDIO_HINTS,
@@ -93,14 +93,15 @@ def get_many(tx: Tx, clip_ids: Collection[str]) -> dict[str, ClipRecord]:
 
 def searched_version(tx: Tx, clip_id: str) -> int | None:
     """The library version of the last change of a ready clip; None for any other clip."""
-    version: int | None = tx.execute(_VERSION, {"the_id": clip_id}).scalar_one_or_none()
+    query = visibility.of_visible(_VERSION)
+    version: int | None = tx.execute(query, {"the_id": clip_id}).scalar_one_or_none()
     return version
 
 
 def find_by_content(tx: Tx, content_key: str) -> ClipRecord | None:
     """The clip with this content (`NewClip.content_key`), if there is one."""
     clip_id = tx.execute(_WITH_CONTENT, {"content": content_key}).scalar_one_or_none()
-    return None if clip_id is None else get(tx, clip_id)
+    return None if clip_id is None else get_many(tx, [clip_id]).get(clip_id)
 
 
 def patch(tx: Tx, clip_id: str, changes: ClipChanges) -> ClipRecord:
@@ -297,7 +298,8 @@ def _not_found(clip_id: str) -> ClipNotFound:
 
 
 def _load(tx: Tx, clip_ids: Collection[str]) -> list[ClipRecord]:
-    rows = tx.execute(_SOME, {"ids": list(clip_ids)}).mappings().all()
+    query = visibility.of_visible(_SOME)
+    rows = tx.execute(query, {"ids": list(clip_ids)}).mappings().all()
     return to_records(tx, rows)
 
 

@@ -216,6 +216,25 @@ api_keys = Table(
     Column("secret_sha256", String, nullable=False),
     Column("created_at", UtcDateTime, nullable=False),
     Column("revoked_at", UtcDateTime),
+    # The only source whose clips the key may read: see `clips.visibility`.
+    Column("source", String),
+    Column("expires_at", UtcDateTime),
+    # The last use, at most a minute old: see `keys.note_use`.
+    Column("used_at", UtcDateTime),
+)
+
+# Who changed or exported what: see `audit`. Rows are only added, and removed when they are old.
+audit_log = Table(
+    "audit_log",
+    metadata,
+    Column("id", String, primary_key=True),
+    Column("at", UtcDateTime, nullable=False, index=True),
+    Column("action", String, nullable=False),
+    # No foreign keys: the row outlives the clip. No name of the key: it is read from `api_keys`.
+    Column("key_id", String, index=True),
+    Column("address", String),
+    Column("clip_id", String, index=True),
+    json_column("details", nullable=False),
 )
 
 # Results of evaluations. They do not change when the library does.

@@ -12,6 +12,7 @@ import re
 import threading
 import time
 from pathlib import Path
+from typing import BinaryIO
 
 from app.errors import FileDamaged
 from app.kinedex_error import Place
@@ -50,11 +51,11 @@ class HashChecker:
             self._checked_at[state] = now
 
 
-def read_whole(path: Path) -> bytes:
+def read_whole(file: BinaryIO, name: str) -> bytes:
     """The bytes of a file; those of a stored file are checked. Raises FileDamaged, OSError."""
-    content = path.read_bytes()
-    if SHA256.fullmatch(path.name):
-        refuse_damage(path.name, hashlib.sha256(content).hexdigest())
+    content = file.read()
+    if SHA256.fullmatch(name):
+        refuse_damage(name, hashlib.sha256(content).hexdigest())
     return content
 
 

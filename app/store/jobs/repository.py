@@ -9,6 +9,7 @@ from typing import Any
 from sqlalchemy import RowMapping, Select, bindparam, insert, select
 
 from app.errors import JobNotFound
+from app.store import audit
 from app.store.clips import versions as library
 from app.store.database.engine import Tx
 from app.store.database.ids import new_id, utc_now
@@ -31,6 +32,7 @@ def enqueue(tx: Tx, new: NewJob) -> JobRecord:
         library.lock(tx)  # so that no other process queues the same key after this query
         queued = tx.execute(_WITH_KEY, {"the_key": new.dedupe_key}).mappings().one_or_none()
         if queued is not None:
+            audit.note(job_id=queued["id"])
             return to_record(queued)
     values = asdict(new) | {
         "kind": new.kind.value,
@@ -45,7 +47,9 @@ def enqueue(tx: Tx, new: NewJob) -> JobRecord:
         "cancel_requested": False,
         "created_at": utc_now(),
     }
-    return to_record(tx.execute(_ADD, values).mappings().one())
+    job = to_record(tx.execute(_ADD, values).mappings().one())
+    audit.note(job_id=job.id)
+    return job
 
 
 def get(tx: Tx, job_id: str) -> JobRecord:

@@ -7,9 +7,10 @@ from typing import Any
 
 import pytest
 
-from app.api.guard.access_log import MAX_ADDRESS_LENGTH, log_request
-from app.api.guard.callers import Caller
-from app.store.keys import KeyRole
+from app.api.guard.access_log import log_request
+from app.api.guard.callers import MAX_ADDRESS_LENGTH, Caller
+from app.store.database.ids import utc_now
+from app.store.keys import KeyRecord, KeyRole
 
 
 def logged(caplog: pytest.LogCaptureFixture, **scope: Any) -> dict[str, Any]:
@@ -23,7 +24,8 @@ def logged(caplog: pytest.LogCaptureFixture, **scope: Any) -> dict[str, Any]:
 def test_a_call_with_a_key_is_logged_with_the_id_of_the_key(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    caller = Caller(role=KeyRole.READ, has_key=True, is_free=False, key_id="0123456789ab")
+    key = KeyRecord("0123456789ab", "a", KeyRole.READ, utc_now(), None)
+    caller = Caller(has_key=True, is_free=False, key=key)
     assert logged(caplog, client=("192.0.2.7", 51234), state={"caller": caller}) == {
         "client": "192.0.2.7",
         "method": "GET",
@@ -35,7 +37,7 @@ def test_a_call_with_a_key_is_logged_with_the_id_of_the_key(
 
 
 @pytest.mark.parametrize(
-    "caller", [None, Caller(role=None, has_key=True, is_free=False), Caller(None, False, True)]
+    "caller", [None, Caller(has_key=True, is_free=False), Caller(has_key=False, is_free=True)]
 )
 def test_a_call_without_a_valid_key_is_logged_without_an_id(
     caplog: pytest.LogCaptureFixture, caller: Caller | None

@@ -42,6 +42,7 @@ METHODS = {
     "livez": "service.alive",
     "readyz": "service.ready",
     "get_status": "service.status",
+    "list_audit": "service.audit",
 }
 GROUPS = {
     "clips": "Clips and everything that can be seen of one.",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import io
 from pathlib import Path
 from typing import Any
@@ -227,6 +228,28 @@ def test_an_exported_manifest_gives_an_empty_library_the_same_labels(
     assert b"".join(manifest(lib, ClipFilter(folder=("set",)))).decode() == table
     for path in (A, B):
         clips.delete_clip(lib, _clip(lib, path).id)
+
+
+def test_labels_like_formulas_are_no_formulas_in_a_manifest_and_are_read_again(
+    lib: Library, folder: Path
+) -> None:
+    said = {
+        "name": "=HYPERLINK(A1)",
+        "person": "'=x",
+        "task": "-5",
+        "source": "+a",
+        "words": ["@b"],
+        "metadata": {"text": "=1+1", "dash": "-5", "number": -5, "quoted": "''-"},
+    }
+    clips.create_clip(lib, io.BytesIO((folder / A).read_bytes()), A, said, path=A)
+    before = _labels(_clip(lib, A))
+    table = b"".join(manifest(lib)).decode()
+    cells = [cell for row in csv.reader(io.StringIO(table)) for cell in row]
+    assert [cell for cell in cells if cell.startswith(("=", "+", "-", "@"))] == ["-5"]  # the number
+    clips.delete_clip(lib, _clip(lib, A).id)
+    (folder / B).unlink()
+    _import(lib, folder, table)
+    assert _labels(_clip(lib, A)) == before
 
 
 def _labels(clip: ClipRecord) -> tuple[Any, ...]:

@@ -202,10 +202,11 @@ def test_a_damaged_file_is_not_read(files: FileStore) -> None:
         file.write(b"v")
     with pytest.raises(FileDamaged, match=sha256):
         files.checked_path(sha256)
-    with pytest.raises(FileDamaged):
-        read_whole(path)
+    with path.open("rb") as file, pytest.raises(FileDamaged):
+        read_whole(file, path.name)
     put(files, b"walk, walk, walk")  # the same bytes repair it
-    assert read_whole(files.checked_path(sha256)) == b"walk, walk, walk"
+    with files.checked_path(sha256).open("rb") as file:
+        assert read_whole(file, sha256) == b"walk, walk, walk"
 
 
 def test_a_checked_file_is_not_hashed_again_for_each_part(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from datetime import datetime
 
 from kinedex.records import Record
 from kinedex.types.choices import KeyRole
@@ -15,7 +16,11 @@ class Session(Record):
     keys_needed: Whether this service asks for API keys.
     role: Of the caller's valid key; null without one. Where no keys are needed, everything is
     allowed.
+    source: The only source whose clips the key may read; null: all clips.
+    expires_at: When the key expires; null: never.
     """
 
     keys_needed: bool
     role: KeyRole | None
+    source: str | None
+    expires_at: datetime | None

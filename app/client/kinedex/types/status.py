@@ -20,6 +20,19 @@ class DiskStatus(Record):
 
 
 @dataclass(frozen=True, slots=True)
+class IsolationStatus(Record):
+    """What the kernel of the API's machine keeps from processes that read uploaded files.
+
+    files: Other files than the one that they read.
+    processes: Starting other processes.
+    """
+
+    files: bool
+    network: bool
+    processes: bool
+
+
+@dataclass(frozen=True, slots=True)
 class QueueStatus(Record):
     """Open jobs of one kind in one state.
 
@@ -46,3 +59,4 @@ class Status(Record):
     clips: dict[str, int]
     jobs: list[QueueStatus]
     disk: DiskStatus
+    isolation: IsolationStatus
