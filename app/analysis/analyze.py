@@ -6,7 +6,8 @@ seconds; motion_vector (128,); paced_vector (128,), the same at a common pace;
 wide_motion_vector (512,); msv_lambda (1,), msv_rho (13,),
 msv_epsilon (a,), msv_convergence (i, 2), the error and the change of lambda after each of
 i iterations; motion_sample (1250,);
-angle_sample (642,); motion_shape (1378,); symbol_statistics (131,); window_vectors_* (w, 125)
+angle_sample (642,); motion_shape (1378,); symbol_statistics (131,); movement_signs (44,);
+window_vectors_* (w, 125)
 float16 and window_spans_* (w, 2) seconds, for 1s, 2s and 4s; beat_times (b,) float64
 seconds, beat_facts (3,) float64 (see `rhythm`); keypose_frames (k,)
 int32, indices of the n frames; keypose_thresholds (2,) float64, the T1 and T2 that found them;
@@ -34,6 +35,7 @@ from app.analysis.descriptors.motion_sample import motion_sample
 from app.analysis.descriptors.motion_shape import motion_shape
 from app.analysis.descriptors.motion_vector import describe, motion_vector, narrow, wide
 from app.analysis.descriptors.motion_volume import decompose
+from app.analysis.descriptors.movement_signs import movement_signs
 from app.analysis.descriptors.pose_cover import pose_cover
 from app.analysis.descriptors.windows import WINDOW_SCALES, window_arrays
 from app.analysis.energy.energy import energies
@@ -53,7 +55,7 @@ from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray
 from app.numerics.tensors.rank1 import Rank1
 
-ANALYSIS_VERSION = 7
+ANALYSIS_VERSION = 8
 """Raise this number if the content of an array changes. Older clips are then analyzed again."""
 
 
@@ -207,6 +209,7 @@ _FLOAT32: dict[str, Callable[[_Parts], FloatArray]] = {
     "angle_sample": lambda parts: angle_sample(parts.active, parts.cycles),
     "motion_shape": lambda parts: motion_shape(parts.active, parts.cycles),
     "symbol_statistics": lambda parts: symbol_statistics(parts.channels, parts.track.rate),
+    "movement_signs": lambda parts: movement_signs(parts.active),
 }
 """How each array that is stored as float32 is computed."""
 _WINDOWS = tuple(name for scale in WINDOW_SCALES for name in (scale.vectors, scale.spans))

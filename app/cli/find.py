@@ -171,5 +171,11 @@ def _answer_text(answer: Answer) -> str:
 
 def _print_words(hits: WordHits, as_json: bool, as_csv: bool) -> None:
     print_hits(hits, (), as_json=as_json, as_csv=as_csv)
-    if hits.unknown_words and not as_json:
+    if as_json:
+        return
+    for word, used in hits.expanded.items():
+        sure = hits.confidence[word]
+        if sure < 1.0:
+            typer.echo(f"{word}: searched as {', '.join(used)} ({sure:.2f} sure)", err=True)
+    if hits.unknown_words:
         typer.echo(f"No clip has the words: {', '.join(hits.unknown_words)}", err=True)

@@ -11,7 +11,7 @@ from app.api.schemas.base import ROUNDED, Cursor, Incoming, Limit, Outgoing, Pro
 from app.api.schemas.clips import FileFrameRate, FormRoles, Stack, Unit, UpAxis
 from app.api.schemas.filters import Filter
 from app.api.schemas.query_source import ClipId
-from app.api.schemas.search import Expanded, Hit, UnknownWords
+from app.api.schemas.search import Confidence, Expanded, Hit, UnknownWords
 from app.search.example.methods import Method
 from app.services.find.by_parts import MAX_EXAMPLES, MAX_WEIGHT
 from app.services.find.queries import ComposedQuery, Example
@@ -202,3 +202,4 @@ class ComposedHits(Outgoing):
     next: str | None
     unknown_words: UnknownWords
     expanded: Expanded
+    confidence: Confidence

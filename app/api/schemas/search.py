@@ -184,7 +184,18 @@ UnknownWords = Annotated[list[str], Field(description="Words that no clip carrie
 Expanded = Annotated[
     dict[str, list[str]],
     BeforeValidator(_none_as_empty),
-    Field(description="For each unknown word, the words that were used instead."),
+    Field(
+        description="For each word that no clip carries, the words that were used instead: words "
+        "of the library, or a detector of what the word names (`left foot moves`)."
+    ),
+]
+Confidence = Annotated[
+    dict[str, Probability],
+    BeforeValidator(_none_as_empty),
+    Field(
+        description="For each word of `expanded`, how sure it is that the replacement means the "
+        "same: 1 for another form of the word. Scores are multiplied by it."
+    ),
 ]
 
 
@@ -198,3 +209,4 @@ class WordHits(Outgoing):
     next: str | None
     unknown_words: UnknownWords
     expanded: Expanded
+    confidence: Confidence

@@ -60,9 +60,10 @@ def judge_words(lib: Library, filter: ClipFilter | None = None) -> WordEvaluatio
 
     return held_out_word_figures(
         training.symbols,
-        training.statistics,
+        training.word_inputs,
         training.label_sets,
         training.groups,
+        persons=training.strangers,
         sequence=channels,
     )
 

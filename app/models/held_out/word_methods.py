@@ -10,6 +10,7 @@ import numpy as np
 from app.models.words.calibration import WordCalibration, calibrate
 from app.models.words.correlated_space import CorrelatedSpace, fit_correlated_space
 from app.models.words.cosine_calibration import CosineCalibration, calibrate_cosines
+from app.models.words.library import default_scores
 from app.models.words.model import clip_cosines, fit_word_model
 from app.models.words.symbol_space import DIMENSIONS, landmark_rows
 from app.numerics.arrays import FloatArray, IntArray
@@ -22,15 +23,18 @@ PRIOR, DEFAULT, CCA_SCORE = "prior", "default", "cca-score"
 class LabeledClips:
     """N labeled clips.
 
-    distances: (N, N) of their symbols; statistics: (N, p); labels: (N, V); groups: N, equal for
-    files of one recording; fold: (N,); likelihoods: (N, N) log likelihood of each motion under
+    distances: (N, N) of their symbols; inputs: (N, p) of the word model; words: V; labels: (N, V);
+    groups: N, equal for files of one recording; persons: N, equal for clips of one person, or None;
+    fold: (N,); likelihoods: (N, N) log likelihood of each motion under
     each symbol, None without it.
     """
 
     distances: FloatArray
-    statistics: FloatArray
+    inputs: FloatArray
+    words: tuple[str, ...]
     labels: FloatArray
     groups: tuple[str, ...]
+    persons: tuple[str, ...] | None
     fold: IntArray
     likelihoods: FloatArray | None = None
 
@@ -60,8 +64,10 @@ def score(clips: LabeledClips, training: IntArray, held_out: IntArray) -> dict[s
     labels = clips.labels[training]
     own_groups = [clips.groups[row] for row in training]
     frequency = np.tile(labels.mean(axis=0), (len(held_out), 1))
-    model = fit_word_model(clips.statistics[training], labels)
-    curve = calibrate(model, clips.statistics[training], labels, own_groups)
+    who = None if clips.persons is None else [clips.persons[row] for row in training]
+    model = fit_word_model(clips.inputs[training], labels)
+    curve = calibrate(model, clips.inputs[training], labels, own_groups, who)
+    found = default_scores(model, curve, clips.words, clips.inputs[held_out])
     points = symbol_points(clips, training)
     space = fit_correlated_space(points[training], labels)
     printed = fit_correlated_space(points[training], labels, ridge=0.0)
@@ -71,7 +77,7 @@ def score(clips: LabeledClips, training: IntArray, held_out: IntArray) -> dict[s
     )
     scores = {
         PRIOR: _by_cosine(frequency),
-        DEFAULT: _by_surprise(curve, model.outputs(clips.statistics[held_out])),
+        DEFAULT: _by_surprise(curve, found),
         "cca": _by_angle(space, points[held_out]),
         CCA_SCORE: _by_chance(space, points[held_out], calibrations, curve),
         "cca-distance": _by_distance(space, points[held_out]),
@@ -93,8 +99,7 @@ def symbol_points(clips: LabeledClips, training: IntArray) -> FloatArray:
     return place(clips.distances[:, rows], landmarks)
 
 
-def _by_surprise(curve: WordCalibration, outputs: FloatArray) -> Scores:
-    words = curve.probabilities(outputs)
+def _by_surprise(curve: WordCalibration, words: FloatArray) -> Scores:
     return Scores(words, _each(lambda query: -curve.joint_surprise(words[:, query > 0.0])))
 
 

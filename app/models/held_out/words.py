@@ -132,18 +132,20 @@ class _Tables:
 
 def held_out_word_figures(
     symbols: Sequence[GaussianHMM],
-    statistics: FloatArray,
+    inputs: FloatArray,
     label_sets: Sequence[Sequence[str]],
     groups: Sequence[str],
     *,
+    persons: Sequence[str] | None = None,
     sequence: Callable[[int], FloatArray] | None = None,
     seed: int = 0,
 ) -> WordEvaluation:
     """Figures of the prior (word frequency), the default word model, and the variants of the cca
     mode (see word_methods).
 
-    symbols: N; statistics: (N, p); label_sets: N; groups: N, equal for files of one recording
-    (see folds.recording_of); sequence: a function from a row to the channels (T, D) of its
+    symbols: N; inputs: (N, p) of the word model; label_sets: N; groups: N, equal for files of one
+    recording (see folds.recording_of); persons: N, equal for clips of one person, if known;
+    sequence: a function from a row to the channels (T, D) of its
     motion. Without it, recognition through the most likely symbol is left out. Clips without
     words are left out.
 
@@ -164,9 +166,11 @@ def held_out_word_figures(
         )
     clips = LabeledClips(
         distances,
-        np.asarray(statistics)[chosen],
+        np.asarray(inputs)[chosen],
+        vocabulary.words,
         vocabulary.label_matrix(labels),
         tuple(own_groups),
+        None if persons is None else tuple(persons[row] for row in chosen),
         grouped_folds(own_groups, folds, seed=seed),
         likelihoods,
     )

@@ -16,8 +16,9 @@ from app.errors import NotEnoughLabels
 from app.models.words.calibration import WordCalibration, calibrate
 from app.models.words.correlated_space import MIN_CLIPS, CorrelatedSpace, fit_correlated_space
 from app.models.words.cosine_calibration import CosineCalibration, calibrate_cosines
+from app.models.words.detectors import DETECTORS, detect, evidence
 from app.models.words.language.wordnet import Meanings
-from app.models.words.model import WordModel, fit_word_model
+from app.models.words.model import STATISTICS, WordModel, fit_word_model
 from app.models.words.query import WordQuery, understand
 from app.models.words.symbol_space import SymbolSpace, fit_symbol_space
 from app.models.words.vocabulary import WordVocabulary
@@ -52,9 +53,21 @@ class LibraryWords:
         """The meaning of a query of words, phrases or sentences in this library."""
         return understand(texts, self.vocabulary, self.meanings.related)
 
-    def word_scores(self, statistics: FloatArray) -> FloatArray:
-        """(N, V) probability that each clip has each word, from statistics (N, p)."""
-        return self.calibration.probabilities(self.model.outputs(statistics))
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The names of the columns of `all_scores`: the vocabulary's words, and the detectors."""
+        return (*self.vocabulary.words, *DETECTORS)
+
+    def all_scores(self, inputs: FloatArray) -> FloatArray:
+        """(N, V + C) probability of each of `columns` for each clip, from inputs (N, p).
+
+        inputs: statistics, and after them the signs of movement (see `model`).
+        """
+        return np.hstack([self.word_scores(inputs), detect(inputs[:, STATISTICS:])])
+
+    def word_scores(self, inputs: FloatArray) -> FloatArray:
+        """(N, V) probability that each clip has each word, from inputs (N, p)."""
+        return default_scores(self.model, self.calibration, self.vocabulary.words, inputs)
 
     def clip_surprises(
         self, scores: FloatArray, columns: Sequence[str], items: Sequence[Mapping[str, float]]
@@ -95,7 +108,8 @@ class LibraryWords:
         """
         _, calibration, _ = self._correlated()
         words = self.vocabulary.words
-        common = self.clip_surprises(calibration.shares[None], words, asked.items)
+        items = [item for item in asked.items if not set(item).isdisjoint(words)]
+        common = self.clip_surprises(calibration.shares[None], words, items)
         return calibration.probabilities(1.0 - angles, np.exp(-common))
 
     def _correlated(self) -> tuple[CorrelatedSpace, CosineCalibration, CosineCalibration]:
@@ -149,6 +163,15 @@ class LibraryWords:
         )
 
 
+def default_scores(
+    model: WordModel, calibration: WordCalibration, words: Sequence[str], inputs: FloatArray
+) -> FloatArray:
+    """(N, V) probability that clips with `inputs` (N, p) have each of `words`."""
+    signs = inputs[:, STATISTICS:]
+    detected = evidence(words, signs) if signs.shape[1] else None
+    return calibration.probabilities(model.outputs(inputs), model.nearest(inputs), detected)
+
+
 @dataclass(frozen=True, slots=True)
 class FittedWords:
     """The results of a fit: the models, and (N, d) the coordinates of the clips in the space."""
@@ -159,25 +182,28 @@ class FittedWords:
 
 def fit_library_words(
     symbols: Sequence[GaussianHMM],
-    statistics: FloatArray,
+    inputs: FloatArray,
     label_sets: Sequence[Sequence[str]],
     groups: Sequence[str] | None = None,
+    persons: Sequence[str] | None = None,
     *,
     seed: int = 0,
 ) -> FittedWords:
-    """Fit on all clips: symbols N, statistics (N, p), label sets N (empty: not labeled).
+    """Fit on all clips: symbols N, inputs (N, p) of the model, label sets N (empty: not labeled).
 
-    groups: N, equal for files of one recording, so that copies do not bias the calibration.
+    groups: N, equal for files of one recording, so that copies do not bias the calibration;
+    persons: N, equal for clips of one person of one source, see `calibrate`.
 
     Deterministic for a seed. Raises NotEnoughLabels if no clip has words.
     """
     vocabulary = WordVocabulary.of(label_sets)
     labels = vocabulary.label_matrix(label_sets)
     labeled = np.flatnonzero(labels.any(axis=1))
-    rows, truth = np.asarray(statistics)[labeled], labels[labeled]
+    rows, truth = np.asarray(inputs)[labeled], labels[labeled]
     model = fit_word_model(rows, truth, seed=seed)
     own = [str(row) if groups is None else groups[row] for row in labeled]
-    calibration = calibrate(model, rows, truth, own, seed=seed)
+    who = None if persons is None else [persons[row] for row in labeled]
+    calibration = calibrate(model, rows, truth, own, who, seed=seed)
     space = fit_symbol_space(symbols, seed=seed)
     points = space.place(symbols)
     correlated, cosines, back = None, None, None

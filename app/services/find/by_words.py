@@ -22,7 +22,8 @@ from app.services.library.library import Library
 from app.services.library.precomputed_rows import OUTPUTS, POINTS, read_precomputed
 from app.store.clips.filter import ClipFilter
 
-STATISTICS = "symbol_statistics"
+INPUTS = ("symbol_statistics", "movement_signs")
+"""The arrays of a clip whose concatenation is the input of the word model."""
 MIN_PROBABILITY = 0.5
 """A clip without words counts as carrying a word if the probability is at least this."""
 
@@ -59,7 +60,7 @@ def rank_by_words(
     fitted = lib.models.words(lib.store)
     asked = fitted.model.ask(texts)
     to_score = _angle_score if _is_by_angle(asked, mode) else _probability
-    if not asked.weights and not asked.excluded:
+    if not asked.items and not asked.excluded:
         nothing = Ranking(np.empty(0, dtype=object), np.zeros(0))
         return WordRanking(nothing, fitted.id, asked, partial(to_score, fitted.model, asked))
     mask = clips.mask(clip_filter)
@@ -75,9 +76,9 @@ def measure(
 ) -> tuple[IntArray, FloatArray]:
     """Rows (k,) and distances (k,) of the clips in `mask` (n,) that the model knows.
 
-    asked: with at least one word of the vocabulary. Raises NotEnoughLabels as `rank_by_words`.
+    asked: with an item, or a word to exclude. Raises NotEnoughLabels as `rank_by_words`.
     """
-    if not asked.weights:
+    if not asked.items:
         return _by_absence(lib, fitted, clips, mask, asked)
     by = _by_angle if _is_by_angle(asked, mode) else _by_surprise
     return by(lib, fitted, clips, mask, asked)
@@ -108,11 +109,11 @@ def clip_points(lib: Library, fitted: Words, clips: LabelView) -> ModelRowsView:
 
 
 def _word_scores(lib: Library, fitted: Words, clips: LabelView) -> ModelRowsView:
-    """(n, V) probabilities that an index's clips carry the words of the vocabulary."""
+    """(n, V + C) probabilities of the model's `columns` for an index's clips."""
     return lib.word_scores.of(
         clips,
         fitted.id,
-        len(fitted.model.vocabulary),
+        len(fitted.model.columns),
         partial(_predict, lib, fitted.model),
         partial(read_precomputed, lib, fitted.id, OUTPUTS),
     )
@@ -146,11 +147,13 @@ def _by_surprise(
     lib: Library, fitted: Words, clips: LabelView, mask: BoolArray, asked: WordQuery
 ) -> tuple[IntArray, FloatArray]:
     """Rows (k,) and distances (k,) of the clips that pass and that the model knows."""
-    words = tuple(asked.weights)
+    names = fitted.model.columns
+    columns = [names.index(name) for name in dict.fromkeys(n for item in asked.items for n in item)]
     model_rows = _word_scores(lib, fitted, clips)
     rows = np.flatnonzero(mask & model_rows.has_row)
-    scores = model_rows.values[rows[:, None], fitted.model.vocabulary.columns(words)]
-    return rows, fitted.model.clip_surprises(scores, words, asked.items)
+    scores = model_rows.values[rows[:, None], columns]
+    surprises = fitted.model.clip_surprises(scores, [names[c] for c in columns], asked.items)
+    return rows, surprises
 
 
 def _by_absence(
@@ -174,13 +177,14 @@ def _by_angle(
 
 
 def _predict(lib: Library, model: LibraryWords, clip_ids: Sequence[str]) -> dict[str, FloatArray]:
-    """(V,) scores of the vocabulary's words by clip id; clips without statistics are left out."""
+    """(V + C,) scores of the model's `columns` by clip id; clips without inputs are left out."""
     with lib.store.read() as tx:
-        statistics = usable_arrays.get_many(tx, clip_ids, STATISTICS)
-    if not statistics:
+        stored = [usable_arrays.get_many(tx, clip_ids, name) for name in INPUTS]
+    usable = [clip_id for clip_id in clip_ids if all(clip_id in rows for rows in stored)]
+    if not usable:
         return {}
-    predicted = model.word_scores(np.stack(list(statistics.values())))
-    return dict(zip(statistics, predicted, strict=True))
+    inputs = np.hstack([np.stack([rows[clip_id] for clip_id in usable]) for rows in stored])
+    return dict(zip(usable, model.all_scores(inputs), strict=True))
 
 
 def _symbol_points(

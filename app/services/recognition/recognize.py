@@ -13,7 +13,7 @@ from app.models.recognition.perera import recognize_by_tensor
 from app.models.recognition.recognizer import recognize as recognize_by_default
 from app.numerics.arrays import FloatArray
 from app.services import fields
-from app.services.find.by_words import STATISTICS
+from app.services.find.by_words import INPUTS as WORD_INPUTS
 from app.services.find.query import describe
 from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
@@ -78,10 +78,10 @@ def recognize(lib: Library, query: RecognizeQuery) -> Recognized:
             " recognizes the task."
         )
     names = INPUTS.get(query.method, (SAMPLE,))
-    arrays = describe(lib, query.source, (*names, STATISTICS)).arrays
+    arrays = describe(lib, query.source, (*names, *WORD_INPUTS)).arrays
     sample = np.concatenate([arrays[name] for name in names])
     answers = _person_and_task(lib, sample, query)
-    words = words_of(lib, arrays[STATISTICS])
+    words = words_of(lib, np.concatenate([arrays[name] for name in WORD_INPUTS]))
     return Recognized(answers.person, answers.task, query.method in CALIBRATED, words)
 
 
@@ -106,12 +106,12 @@ def _person_and_task(lib: Library, sample: FloatArray, query: RecognizeQuery) ->
     return found
 
 
-def words_of(lib: Library, statistics: FloatArray) -> WordScores:
-    """The best words for a clip's `symbol_statistics` (131,); empty without a word model."""
+def words_of(lib: Library, inputs: FloatArray) -> WordScores:
+    """The best words for the word model's `inputs` (175,) of a clip; empty without a word model."""
     try:
         model = lib.models.words(lib.store).model
     except ModelNotFitted:
         return ()
-    scores = model.word_scores(statistics[None])[0]
+    scores = model.word_scores(inputs[None])[0]
     best = np.argsort(-scores, kind="stable")[:WORDS_SHOWN]
     return tuple((model.vocabulary.words[i], float(scores[i])) for i in best if scores[i] > 0)

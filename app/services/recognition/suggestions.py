@@ -15,7 +15,7 @@ from app.services import fields
 from app.services.clips import labels
 from app.services.clips.catalogue import get_clip, update_clip
 from app.services.clips.labels import LabelCount
-from app.services.find.by_words import STATISTICS
+from app.services.find.by_words import INPUTS
 from app.services.find.queries import WORD_MODES
 from app.services.library.library import Library
 from app.services.library.ready_clips import descriptors_of, ready_clip
@@ -52,8 +52,9 @@ def suggest(lib: Library, clip_id: str, limit: int = 10, mode: str = "default") 
 def _scores(lib: Library, model: LibraryWords, clip: ClipRecord) -> FloatArray:
     """(V,) scores of the vocabulary's words by the default mode."""
     with lib.store.read() as tx:
-        statistics = descriptors_of(tx, clip, (STATISTICS,))[STATISTICS]
-    return np.asarray(model.word_scores(statistics[None])[0])
+        stored = descriptors_of(tx, clip, INPUTS)
+    inputs = np.concatenate([stored[name] for name in INPUTS])
+    return np.asarray(model.word_scores(inputs[None])[0])
 
 
 def _scores_cca(lib: Library, model: LibraryWords, clip: ClipRecord) -> FloatArray:

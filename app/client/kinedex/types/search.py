@@ -63,7 +63,10 @@ class WordHits(Page[WordHit]):
     """A page of a ranking by words, the most probable first.
 
     unknown_words: Words that no clip carries.
-    expanded: For each unknown word, the words that were used instead.
+    expanded: For each word that no clip carries, the words that were used instead: words of the
+    library, or a detector of what the word names (`left foot moves`).
+    confidence: For each word of `expanded`, how sure it is that the replacement means the same:
+    1 for another form of the word. Scores are multiplied by it.
     """
 
     method: str
@@ -73,3 +76,4 @@ class WordHits(Page[WordHit]):
     next: str | None
     unknown_words: list[str]
     expanded: dict[str, list[str]]
+    confidence: dict[str, float]
