@@ -46,7 +46,7 @@ from app.analysis.rhythm.rhythm import NO_RHYTHM_INPUT, RhythmInput, find_rhythm
 from app.analysis.segments.keypose_arrays import keypose_arrays
 from app.analysis.stage_times import StageTimes
 from app.analysis.symbols.channels import symbol_features, symbol_statistics
-from app.analysis.symbols.symbol import describe_symbol
+from app.analysis.symbols.symbol import SYMBOL_ARRAYS, describe_symbol
 from app.motion.frame.body_frame import BodyTrack, body_track, smooth_track
 from app.motion.frame.gait import exact_gait_cycles
 from app.motion.frame.posed_start import posed_frames
@@ -98,7 +98,7 @@ def analyze(
         parts = _Parts(smooth_track(motion))
         arrays: dict[str, NDArray[Any]] = {**_for_search(parts)}
     with times.stage("symbol"):
-        arrays |= describe_symbol(parts.channels)
+        arrays |= parts.symbol
     with times.stage("rhythm"):
         rms_energies = energies(track)
         rhythm = find_rhythm(track, rhythm_input, onsets, rms_energies)
@@ -129,10 +129,10 @@ def _of_start(motion: Motion) -> tuple[Caution, ...]:
 def describe_for_search(motion: Motion, names: Collection[str] | None = None) -> Analysis:
     """Compute only the arrays that search and recognition need.
 
-    Keyposes and the motion symbol, which is slow, are left out. names: the arrays to compute;
-    None computes all that search needs, in about 10 ms for 5 s of motion. Each array is the same
-    as from `analyze`. Raises KeyError for a name that only `analyze` computes, and TooShort or
-    NotHuman.
+    Keyposes and the motion symbol, which is slow, are left out. names: the arrays to compute,
+    those of the symbol too; None computes all that search needs, in about 10 ms for 5 s of motion.
+    Each array is the same as from `analyze`. Raises KeyError for a name that only `analyze`
+    computes, and TooShort or NotHuman.
     """
     return Analysis(motion, {**_for_search(_Parts(smooth_track(motion)), names)})
 
@@ -184,6 +184,11 @@ class _Parts:
         return symbol_features(self.active)
 
     @cached_property
+    def symbol(self) -> dict[str, FloatArray]:
+        """The arrays of the motion symbol by name."""
+        return describe_symbol(self.channels)
+
+    @cached_property
     def cycles(self) -> list[tuple[float, float]]:
         """The gait cycles: start and end in frames of the active part."""
         return exact_gait_cycles(self.active)
@@ -217,6 +222,14 @@ _WINDOWS = tuple(name for scale in WINDOW_SCALES for name in (scale.vectors, sca
 
 def _for_search(parts: _Parts, names: Collection[str] | None = None) -> dict[str, FloatArray]:
     return {
-        name: parts.windows[name] if name in _WINDOWS else _FLOAT32[name](parts).astype(np.float32)
+        name: _array(parts, name)
         for name in (names if names is not None else (*_FLOAT32, *_WINDOWS))
     }
+
+
+def _array(parts: _Parts, name: str) -> FloatArray:
+    if name in _WINDOWS:
+        return parts.windows[name]
+    if name in SYMBOL_ARRAYS:
+        return parts.symbol[name]
+    return _FLOAT32[name](parts).astype(np.float32)

@@ -59,7 +59,7 @@ def search(
         ),
     ] = "any",
     mode: Annotated[
-        str, typer.Option(help="Mode of a search by words: default or cca.")
+        str, typer.Option(help="Mode of a search by words: default, cca or printed.")
     ] = "default",
     start: Annotated[
         float | None, typer.Option(help="Search with a part of the motion: its start in seconds.")
@@ -118,6 +118,9 @@ def recognize(
     method: Annotated[
         str, typer.Option(help="default, multilinear, signatures or perera.")
     ] = "default",
+    word_mode: Annotated[
+        str, typer.Option(help="How words are predicted: default, cca or printed.")
+    ] = "default",
     skeleton: Skeleton = None,
     frame_rate: FrameRate = None,
     unit: Unit = None,
@@ -131,6 +134,7 @@ def recognize(
         "known_person": known_person,
         "known_task": known_task,
         "method": method,
+        "word_mode": word_mode,
         "frame_rate": frame_rate,
         "unit": unit,
         "up_axis": up_axis,

@@ -90,5 +90,7 @@ def test_only_the_requested_arrays_are_computed() -> None:
         some = describe_for_search(motion, names).arrays
         assert tuple(some) == names
         assert all(some[name].tobytes() == every[name].tobytes() for name in names)
-    with pytest.raises(KeyError, match="symbol_means"):
-        describe_for_search(motion, ["symbol_means"])
+    symbol = describe_for_search(motion, ["symbol_means"]).arrays["symbol_means"]
+    assert symbol.tobytes() == analyze(motion).arrays["symbol_means"].tobytes()
+    with pytest.raises(KeyError, match="pose_cover"):
+        describe_for_search(motion, ["pose_cover"])

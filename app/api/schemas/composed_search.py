@@ -71,7 +71,7 @@ class _ComposedOptions(Incoming):
         "the 300 clips that fit best by vectors and words; the others follow in that order. One "
         "example alone is compared with every clip, as in a search by example.",
     )
-    mode: Literal["default", "cca"] = Field(
+    mode: Literal["default", "cca", "printed"] = Field(
         "default", description="How clips are ranked by words, as in a search by words."
     )
     limit: Limit = 10

@@ -98,11 +98,14 @@ class WordSearch(Incoming):
             "understood. A word with a minus before it (-left) leaves out the clips that carry it."
         ),
     )
-    mode: Literal["default", "cca"] = Field(
+    mode: Literal["default", "cca", "printed"] = Field(
         "default",
         description=(
             "How clips are ranked. default: by a kernel regression from motion features to words. "
-            "cca: by the angle in Takano's correlated space of motion symbols and words."
+            "cca: by the angle in Takano's correlated space of motion symbols and words, with a "
+            "ridge and with as many dimensions as predict held-out words best. printed: by the "
+            "distance in that space as Takano printed it, with the pseudo-inverse and 10 "
+            "dimensions."
         ),
     )
     limit: Limit = 10
@@ -172,7 +175,8 @@ class WordHit(Hit):
         ),
     )
     distance: float = Field(
-        description="-ln(score) in mode default; 1 - cosine, 0 to 2, in mode cca."
+        description="-ln(score) in mode default; 1 - cosine, 0 to 2, in mode cca; Euclidean in "
+        "mode printed."
     )
 
 

@@ -136,7 +136,8 @@ def _fit_words(training: TrainingSet, before: Before) -> Fit:
     model = replace(fitted.words, meanings=meanings)
     arrays, meta = model.to_arrays()
     ids = [clip.id for clip in training.clips]
-    arrays |= precomputed_arrays(ids, model.all_scores(training.word_inputs), fitted.points)
+    scores = model.all_scores(training.word_inputs)
+    arrays |= precomputed_arrays(ids, scores, fitted.points, fitted.cca_points)
     return Fit(arrays, meta, word_figures(training))
 
 

@@ -45,7 +45,8 @@ class WordHit(Record):
     because no clip carries it, the most probable of them counts, reduced by the distance
     between the two meanings. Rounded to 4 decimals, because the calibration is not more exact.
     0 means very unlikely, not impossible.
-    distance: -ln(score) in mode default; 1 - cosine, 0 to 2, in mode cca.
+    distance: -ln(score) in mode default; 1 - cosine, 0 to 2, in mode cca; Euclidean in mode
+    printed.
     start: Start of the found part, seconds from the start of the clip. 0 with scope clips.
     end: End of the found part, seconds.
     """
