@@ -13,8 +13,10 @@ from app.api.schemas.base import (
     SPEED,
     TEMPO,
     TRAVEL,
+    Captions,
     Cursor,
     Fields,
+    FormCaptions,
     FormWords,
     Incoming,
     Label,
@@ -131,6 +133,7 @@ class Clip(Outgoing):
     person: str | None
     task: str | None
     words: list[str]
+    captions: list[str] = Field(description="Sentences that describe the motion.")
     license: str | None
     source: str | None
     metadata: Metadata = Field(description="Values of your own, by key.")
@@ -194,6 +197,12 @@ class ClipForm(Incoming):
         description="Separated by spaces. In a phrase, underscores replace spaces.",
         examples=["walk slow"],
     )
+    captions: FormCaptions | None = Field(
+        None,
+        description="Sentences that describe the motion, one a line (or separated by |). Their "
+        "words teach the word model like `words`.",
+        examples=["somebody walks slowly and turns left"],
+    )
     license: Label | None = Field(None, examples=["CC-BY-4.0"])
     source: Label | None = None
     metadata: Json[MetadataChanges] | None = Field(
@@ -235,6 +244,9 @@ class ClipPatch(Incoming):
     person: Label | None = None
     task: Label | None = None
     words: Words | None = None
+    captions: Captions | None = Field(
+        None, description="Sentences that describe the motion; they replace all earlier ones."
+    )
     license: Label | None = None
     source: Label | None = None
     metadata: MetadataChanges | None = Field(

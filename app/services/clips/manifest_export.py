@@ -22,7 +22,7 @@ from app.store.database.engine import Tx
 
 BATCH = 500
 """Clips that are read at a time."""
-LABELS = ("name", "person", "task", "words", "license", "source")
+LABELS = ("name", "person", "task", "words", "license", "source", "captions")
 HINTS = ("frame_rate", "unit", "audio_offset", "tempo", "beats")
 KEYPOSES = "keyposes"
 
@@ -47,7 +47,8 @@ def _rows(tx: Tx, ids: Sequence[str], keys: Sequence[str]) -> Iterator[list[str]
     for clip in clips.get_many(tx, ids).values():
         yield [
             clip.path or clip.file_name,
-            *(_cell(getattr(clip, name)) for name in LABELS),
+            *(_cell(getattr(clip, name)) for name in LABELS[:-1]),
+            " | ".join(clip.captions),
             *(_cell(_hint(clip, name)) for name in HINTS),
             _cell(keyposes.get(clip.id)),
             *(as_cell(clip.metadata[key]) if key in clip.metadata else "" for key in keys),

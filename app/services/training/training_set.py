@@ -12,6 +12,7 @@ from app.models.folds import recording_of
 from app.models.metric.learned_metric import INPUTS, ClipDescriptors
 from app.models.recognition.copies import ClipCopies, disturbed_copies, evenly_chosen
 from app.models.recognition.views import full_samples
+from app.models.words.language.captions import with_caption_words
 from app.motion.roles.joint_roles import ESSENTIAL_ROLES
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm.model import GaussianHMM
@@ -71,8 +72,9 @@ class TrainingSet:
 
     @property
     def label_sets(self) -> Sequence[tuple[str, ...]]:
-        """(N,) the words of each clip."""
-        return [clip.words for clip in self.clips]
+        """(N,) the words of each clip, and those of its captions."""
+        words = [clip.words for clip in self.clips]
+        return with_caption_words(words, [clip.captions for clip in self.clips])
 
     @property
     def word_inputs(self) -> FloatArray:
