@@ -6,7 +6,8 @@ seconds; motion_vector (128,); paced_vector (128,), the same at a common pace;
 wide_motion_vector (512,); msv_lambda (1,), msv_rho (13,),
 msv_epsilon (a,), msv_convergence (i, 2), the error and the change of lambda after each of
 i iterations; motion_sample (1250,);
-angle_sample (642,); motion_shape (1378,); symbol_statistics (131,); window_vectors_* (w, 125)
+angle_sample (642,); motion_shape (1378,); symbol_statistics (131,); movement_signs (44,);
+window_vectors_* (w, 125)
 float16 and window_spans_* (w, 2) seconds, for 1s, 2s and 4s; beat_times (b,) float64
 seconds, beat_facts (3,) float64 (see `rhythm`); keypose_frames (k,)
 int32, indices of the n frames; keypose_thresholds (2,) float64, the T1 and T2 that found them;
@@ -34,6 +35,7 @@ from app.analysis.descriptors.motion_sample import motion_sample
 from app.analysis.descriptors.motion_shape import motion_shape
 from app.analysis.descriptors.motion_vector import describe, motion_vector, narrow, wide
 from app.analysis.descriptors.motion_volume import decompose
+from app.analysis.descriptors.movement_signs import movement_signs
 from app.analysis.descriptors.pose_cover import pose_cover
 from app.analysis.descriptors.windows import WINDOW_SCALES, window_arrays
 from app.analysis.energy.energy import energies
@@ -44,7 +46,7 @@ from app.analysis.rhythm.rhythm import NO_RHYTHM_INPUT, RhythmInput, find_rhythm
 from app.analysis.segments.keypose_arrays import keypose_arrays
 from app.analysis.stage_times import StageTimes
 from app.analysis.symbols.channels import symbol_features, symbol_statistics
-from app.analysis.symbols.symbol import describe_symbol
+from app.analysis.symbols.symbol import SYMBOL_ARRAYS, describe_symbol
 from app.motion.frame.body_frame import BodyTrack, body_track, smooth_track
 from app.motion.frame.gait import exact_gait_cycles
 from app.motion.frame.posed_start import posed_frames
@@ -53,7 +55,7 @@ from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray
 from app.numerics.tensors.rank1 import Rank1
 
-ANALYSIS_VERSION = 7
+ANALYSIS_VERSION = 8
 """Raise this number if the content of an array changes. Older clips are then analyzed again."""
 
 
@@ -96,7 +98,7 @@ def analyze(
         parts = _Parts(smooth_track(motion))
         arrays: dict[str, NDArray[Any]] = {**_for_search(parts)}
     with times.stage("symbol"):
-        arrays |= describe_symbol(parts.channels)
+        arrays |= parts.symbol
     with times.stage("rhythm"):
         rms_energies = energies(track)
         rhythm = find_rhythm(track, rhythm_input, onsets, rms_energies)
@@ -127,10 +129,10 @@ def _of_start(motion: Motion) -> tuple[Caution, ...]:
 def describe_for_search(motion: Motion, names: Collection[str] | None = None) -> Analysis:
     """Compute only the arrays that search and recognition need.
 
-    Keyposes and the motion symbol, which is slow, are left out. names: the arrays to compute;
-    None computes all that search needs, in about 10 ms for 5 s of motion. Each array is the same
-    as from `analyze`. Raises KeyError for a name that only `analyze` computes, and TooShort or
-    NotHuman.
+    Keyposes and the motion symbol, which is slow, are left out. names: the arrays to compute,
+    those of the symbol too; None computes all that search needs, in about 10 ms for 5 s of motion.
+    Each array is the same as from `analyze`. Raises KeyError for a name that only `analyze`
+    computes, and TooShort or NotHuman.
     """
     return Analysis(motion, {**_for_search(_Parts(smooth_track(motion)), names)})
 
@@ -182,6 +184,11 @@ class _Parts:
         return symbol_features(self.active)
 
     @cached_property
+    def symbol(self) -> dict[str, FloatArray]:
+        """The arrays of the motion symbol by name."""
+        return describe_symbol(self.channels)
+
+    @cached_property
     def cycles(self) -> list[tuple[float, float]]:
         """The gait cycles: start and end in frames of the active part."""
         return exact_gait_cycles(self.active)
@@ -207,6 +214,7 @@ _FLOAT32: dict[str, Callable[[_Parts], FloatArray]] = {
     "angle_sample": lambda parts: angle_sample(parts.active, parts.cycles),
     "motion_shape": lambda parts: motion_shape(parts.active, parts.cycles),
     "symbol_statistics": lambda parts: symbol_statistics(parts.channels, parts.track.rate),
+    "movement_signs": lambda parts: movement_signs(parts.active),
 }
 """How each array that is stored as float32 is computed."""
 _WINDOWS = tuple(name for scale in WINDOW_SCALES for name in (scale.vectors, scale.spans))
@@ -214,6 +222,14 @@ _WINDOWS = tuple(name for scale in WINDOW_SCALES for name in (scale.vectors, sca
 
 def _for_search(parts: _Parts, names: Collection[str] | None = None) -> dict[str, FloatArray]:
     return {
-        name: parts.windows[name] if name in _WINDOWS else _FLOAT32[name](parts).astype(np.float32)
+        name: _array(parts, name)
         for name in (names if names is not None else (*_FLOAT32, *_WINDOWS))
     }
+
+
+def _array(parts: _Parts, name: str) -> FloatArray:
+    if name in _WINDOWS:
+        return parts.windows[name]
+    if name in SYMBOL_ARRAYS:
+        return parts.symbol[name]
+    return _FLOAT32[name](parts).astype(np.float32)

@@ -26,6 +26,7 @@ SHAPES: Mapping[str, tuple[int | None, ...]] = {
     "angle_sample": (642,),
     "motion_shape": (1378,),
     "symbol_statistics": (131,),
+    "movement_signs": (44,),
     "window_vectors_1s": (None, 125),
     "window_spans_1s": (None, 2),
     "window_vectors_2s": (None, 125),

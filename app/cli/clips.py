@@ -25,6 +25,7 @@ COLUMNS = (
     "person",
     "task",
     "words",
+    "captions",
     "license",
     "source",
     "frames",
@@ -109,6 +110,10 @@ def label(
     words: Annotated[
         str | None, typer.Option(help='All words, separated by spaces; "" removes them.')
     ] = None,
+    caption: Annotated[
+        list[str] | None,
+        typer.Option(help='A sentence that describes it; may be repeated; "" removes all.'),
+    ] = None,
     license: Annotated[str | None, typer.Option(help='The license; "" removes it.')] = None,
     source: Annotated[str | None, typer.Option(help='The source; "" removes it.')] = None,
     meta: Annotated[
@@ -123,6 +128,8 @@ def label(
     )
     if meta:
         labels["metadata"] = metadata_of(meta)
+    if caption is not None:
+        labels["captions"] = [text for text in caption if text.strip()]
     if not labels:
         raise typer.BadParameter("give at least one label, for example --task walk")
     with open_client(context) as client:
@@ -192,6 +199,7 @@ def _details(clip: Clip) -> list[tuple[str, object]]:
     ]
     rows += [
         ("words", " ".join(clip.words) or None),
+        *(("caption", text) for text in clip.captions),
         ("license", clip.license),
         ("source", clip.source),
         *((f"meta {key}", value) for key, value in clip.metadata.items()),

@@ -136,4 +136,9 @@ EVALUATIONS = {
         "words",
         "Find words for clips and clips for words, held out and in-sample.",
     ),
+    "captions": CommandEntry(
+        "app.cli.evaluate.captions",
+        "captions",
+        "Rank clips by captions that the library does not have, beside chance.",
+    ),
 }

@@ -59,7 +59,7 @@ def search(
         ),
     ] = "any",
     mode: Annotated[
-        str, typer.Option(help="Mode of a search by words: default or cca.")
+        str, typer.Option(help="Mode of a search by words: default, cca or printed.")
     ] = "default",
     start: Annotated[
         float | None, typer.Option(help="Search with a part of the motion: its start in seconds.")
@@ -118,6 +118,9 @@ def recognize(
     method: Annotated[
         str, typer.Option(help="default, multilinear, signatures or perera.")
     ] = "default",
+    word_mode: Annotated[
+        str, typer.Option(help="How words are predicted: default, cca or printed.")
+    ] = "default",
     skeleton: Skeleton = None,
     frame_rate: FrameRate = None,
     unit: Unit = None,
@@ -131,6 +134,7 @@ def recognize(
         "known_person": known_person,
         "known_task": known_task,
         "method": method,
+        "word_mode": word_mode,
         "frame_rate": frame_rate,
         "unit": unit,
         "up_axis": up_axis,
@@ -171,5 +175,11 @@ def _answer_text(answer: Answer) -> str:
 
 def _print_words(hits: WordHits, as_json: bool, as_csv: bool) -> None:
     print_hits(hits, (), as_json=as_json, as_csv=as_csv)
-    if hits.unknown_words and not as_json:
+    if as_json:
+        return
+    for word, used in hits.expanded.items():
+        sure = hits.confidence[word]
+        if sure < 1.0:
+            typer.echo(f"{word}: searched as {', '.join(used)} ({sure:.2f} sure)", err=True)
+    if hits.unknown_words:
         typer.echo(f"No clip has the words: {', '.join(hits.unknown_words)}", err=True)

@@ -26,6 +26,7 @@ from app.evaluate.retrieval.evaluation import (
     judge_retrieval,
 )
 from app.evaluate.retrieval.volumes import VolumeEvaluation, judge_volumes
+from app.evaluate.words.captions import CaptionEvaluation, judge_captions
 from app.evaluate.words.evaluation import WordExample, draw_words, judge_words, word_examples
 from app.evaluate.words.symbols import draw_symbols, judge_symbols
 
@@ -34,6 +35,7 @@ __all__ = [
     "JUDGED_KEYPOSES",
     "MAX_QUERIES",
     "RECOGNIZERS",
+    "CaptionEvaluation",
     "JudgedClip",
     "JudgedKeyposes",
     "JudgedMethod",
@@ -48,6 +50,7 @@ __all__ = [
     "draw_symbols",
     "draw_words",
     "is_any_annotated",
+    "judge_captions",
     "judge_keyposes",
     "judge_low_dimensional",
     "judge_recognition",

@@ -66,6 +66,7 @@ LABELS: Mapping[str, Check] = {
     "license": partial(fields.text, "license"),
     "source": partial(fields.text, "source"),
     "metadata": metadata,
+    "captions": lambda value: fields.captions(value) or (),
 }
 """The check of each field of `ClipLabels`. Clients use the same names."""
 
@@ -86,7 +87,9 @@ _STORED_NAMES = {UNIT: "metres_per_unit"}
 """The fields of `AnalysisHints` for which clients use another name."""
 _CLIENT_NAMES = {stored: name for name, stored in _STORED_NAMES.items()}
 
-RESERVED_KEYS = frozenset({*LABELS, *HINTS, "path", "fps", "keyposes", "audio", "word", "folder"})
+RESERVED_KEYS = frozenset(
+    {*LABELS, *HINTS, "path", "fps", "keyposes", "audio", "word", "folder", "caption"}
+)
 """Names that no key of the metadata has, in upper or lower case: a column of a manifest with such a
 name is the field itself."""
 

@@ -7,6 +7,7 @@ the value in its normal form, and raises BadField, which names the field, for a 
 from __future__ import annotations
 
 import math
+import re
 import unicodedata
 from collections.abc import Iterable, Mapping
 
@@ -29,6 +30,10 @@ MAX_JOINT_NAME = MAX_NAME_LENGTH
 """Characters of a joint's name; the readers accept no longer names in files."""
 MAX_WORDS = 100
 """Words on one clip."""
+MAX_CAPTIONS = 50
+"""Captions of one clip."""
+CAPTION_ENDS = re.compile(r"[\n\r|]+")
+"""What is between captions in one text."""
 MAX_LIMIT = 1000
 """Hits of one page."""
 MAX_KEYPOSES = 10_000
@@ -71,6 +76,18 @@ def words(value: str | Iterable[str] | None) -> tuple[str, ...] | None:
     tidy = normalize_words(filter(None, (text("words", part) for part in parts)))
     if len(tidy) > MAX_WORDS:
         raise bad_field("words", f"must not be more than {MAX_WORDS}")
+    return tidy
+
+
+def captions(value: str | Iterable[str] | None) -> tuple[str, ...] | None:
+    """Sentences without repetitions, in the client's order; in one string, line breaks or | are
+    between them."""
+    if value is None:
+        return None
+    parts = CAPTION_ENDS.split(value) if isinstance(value, str) else list(value)
+    tidy = tuple(dict.fromkeys(filter(None, (text("captions", part) for part in parts))))
+    if len(tidy) > MAX_CAPTIONS:
+        raise bad_field("captions", f"must not be more than {MAX_CAPTIONS}")
     return tidy
 
 

@@ -48,7 +48,7 @@ def test_arrays_are_finite_with_documented_shapes_and_types(body: FloatArray) ->
         "msv_convergence": (len(arrays["msv_convergence"]), 2),
         "pose_cover": (len(arrays["pose_cover"]), 38),
         "motion_sample": (1250,), "angle_sample": (642,), "motion_shape": (1378,),
-        "symbol_statistics": (131,), "symbol_means": (states, 26),
+        "symbol_statistics": (131,), "movement_signs": (44,), "symbol_means": (states, 26),
         "symbol_variances": (states, 26), "symbol_transitions": (states, states),
     }  # fmt: skip
     assert {name: array.shape for name, array in arrays.items()} == shapes
@@ -90,5 +90,7 @@ def test_only_the_requested_arrays_are_computed() -> None:
         some = describe_for_search(motion, names).arrays
         assert tuple(some) == names
         assert all(some[name].tobytes() == every[name].tobytes() for name in names)
-    with pytest.raises(KeyError, match="symbol_means"):
-        describe_for_search(motion, ["symbol_means"])
+    symbol = describe_for_search(motion, ["symbol_means"]).arrays["symbol_means"]
+    assert symbol.tobytes() == analyze(motion).arrays["symbol_means"].tobytes()
+    with pytest.raises(KeyError, match="pose_cover"):
+        describe_for_search(motion, ["pose_cover"])

@@ -65,6 +65,22 @@ def test_words_of_a_form_are_separated_by_spaces(idle: httpx2.Client) -> None:
     assert answer["clip"]["words"] == ["walk", "left_leg", "slow"]
 
 
+def test_captions_are_kept_found_corrected_and_exported(idle: httpx2.Client) -> None:
+    sent = "Somebody walks. | He turns left\nSomebody walks."
+    clip = _post(idle, _tiny(7), captions=sent, source="captioned").json()["clip"]
+    assert clip["captions"] == ["Somebody walks.", "He turns left"]
+    found = idle.get("/v1/clips", params={"q": "turns LEFT"}).json()["items"]
+    assert [one["id"] for one in found] == [clip["id"]]
+    table = idle.get("/v1/manifest.csv", params={"source": "captioned"}).text
+    assert "Somebody walks. | He turns left" in table
+    path = f"/v1/clips/{clip['id']}"
+    changed = idle.patch(path, json={"captions": ["A walk"]}).json()
+    assert changed["captions"] == ["A walk"]
+    assert not idle.get("/v1/clips", params={"q": "turns left"}).json()["items"]
+    assert idle.patch(path, json={"captions": None}).json()["captions"] == []
+    assert idle.patch(path, json={"captions": ["x"] * 51}).status_code == 422
+
+
 def test_lists_page_through_everything_once(demo: httpx2.Client) -> None:
     whole = [c["id"] for c in demo.get("/v1/clips", params={"limit": 1000}).json()["items"]]
     seen, cursor = [], None

@@ -165,7 +165,7 @@ def test_a_cursor_of_another_question(demo: httpx2.Client, walk: dict[str, Any])
     assert_problem(answer, 404, "page_not_found", "body.cursor")
 
 
-@pytest.mark.parametrize("mode", ["default", "cca"])
+@pytest.mark.parametrize("mode", ["default", "cca", "printed"])
 def test_words_find_motions(demo: httpx2.Client, mode: str) -> None:
     body = {"words": ["walk", "zzyzx"], "mode": mode, "limit": 3}
     reply = demo.post("/v1/search/words", json=body).json()

@@ -18,7 +18,7 @@ def test_a_sentence_is_understood(demo: httpx2.Client) -> None:
 
 
 def test_a_search_may_only_exclude_words(demo: httpx2.Client) -> None:
-    for mode in ("default", "cca"):
+    for mode in ("default", "cca", "printed"):
         reply = demo.post("/v1/search/words", json={"words": ["-walking"], "mode": mode}).json()
         assert reply["items"]
         assert "walk" not in {hit["clip"]["task"] for hit in reply["items"]}

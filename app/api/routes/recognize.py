@@ -12,7 +12,7 @@ from app.api.guard.admission import heavy
 from app.api.openapi import body, refusals
 from app.api.queries import QUERY_FILES, source_of
 from app.api.schemas.recognition import Recognition, Recognize, RecognizeForm
-from app.errors import ClipNotReady, ModelNotFitted
+from app.errors import ClipNotReady, ModelNotFitted, NotEnoughLabels
 from app.services.recognition.recognize import RecognizeQuery
 from app.services.recognition.recognize import recognize as recognize_motion
 
@@ -35,7 +35,7 @@ async def _query(request: Request) -> RecognizeQuery:
 @router.post(
     "",
     dependencies=[reads, Depends(_query), heavy],  # takes a slot after the form has arrived
-    responses=refusals(400, 404, 413, 415, 503, 507, ClipNotReady, ModelNotFitted),
+    responses=refusals(400, 404, 413, 415, 503, 507, ClipNotReady, ModelNotFitted, NotEnoughLabels),
     openapi_extra=body(model=Recognize, examples=_EXAMPLES, form=RecognizeForm, files=QUERY_FILES),
 )
 def recognize(lib: Lib, query: Annotated[RecognizeQuery, Depends(_query)]) -> Recognition:

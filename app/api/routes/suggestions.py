@@ -18,10 +18,10 @@ from app.services.recognition import suggestions
 router = APIRouter(prefix="/v1/clips/{clip_id}/word-suggestions", tags=["clips"])
 
 Mode = Annotated[
-    Literal["default", "cca"],
+    Literal["default", "cca", "printed"],
     Query(
-        description="As in a search by words: kernel regression (default) or correlated "
-        "space (cca)."
+        description="As in a search by words: kernel regression (default), or the correlated "
+        "space (cca; printed: as in the paper)."
     ),
 ]
 SuggestionLimit = Annotated[int, Query(ge=1, le=suggestions.MAX_SUGGESTED)]

@@ -91,6 +91,10 @@ def _as_words(value: Any) -> Any:
     return value.split() if isinstance(value, str) else value
 
 
+def _as_captions(value: Any) -> Any:
+    return fields.CAPTION_ENDS.split(value) if isinstance(value, str) else value
+
+
 def _without_control(value: str) -> str:
     if fields.holds_control(value):
         raise ValueError(fields.NO_CONTROL)
@@ -139,6 +143,15 @@ Words = Annotated[list[Label], Field(max_length=fields.MAX_WORDS)]
 _JoinedWords = Annotated[str, Field(max_length=fields.MAX_WORDS * (fields.MAX_TEXT + 1))]
 FormWords = Annotated[Words, BeforeValidator(_as_words, json_schema_input_type=_JoinedWords)]
 """Words of a form, separated by spaces; a phrase is joined by underscores."""
+
+Captions = Annotated[list[Label], Field(max_length=fields.MAX_CAPTIONS)]
+"""The captions of one clip."""
+
+_JoinedCaptions = Annotated[str, Field(max_length=fields.MAX_CAPTIONS * (fields.MAX_TEXT + 1))]
+FormCaptions = Annotated[
+    Captions, BeforeValidator(_as_captions, json_schema_input_type=_JoinedCaptions)
+]
+"""Captions of a form, one a line."""
 
 Limit = Annotated[int, Field(ge=1, le=1000, description="Maximum number of items in one answer.")]
 

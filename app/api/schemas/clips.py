@@ -14,8 +14,10 @@ from app.api.schemas.base import (
     SPEED,
     TEMPO,
     TRAVEL,
+    Captions,
     Cursor,
     Fields,
+    FormCaptions,
     FormWords,
     Incoming,
     Label,
@@ -137,6 +139,7 @@ class Clip(Outgoing):
     person: str | None
     task: str | None
     words: list[str]
+    captions: list[str] = Field(description="Sentences that describe the motion.")
     license: str | None
     source: str | None
     metadata: Metadata = Field(description="Values of your own, by key.")
@@ -200,6 +203,12 @@ class ClipForm(Incoming):
         description="Separated by spaces. In a phrase, underscores replace spaces.",
         examples=["walk slow"],
     )
+    captions: FormCaptions | None = Field(
+        None,
+        description="Sentences that describe the motion, one a line (or separated by |). Their "
+        "words teach the word model like `words`.",
+        examples=["somebody walks slowly and turns left"],
+    )
     license: Label | None = Field(None, examples=["CC-BY-4.0"])
     source: Label | None = None
     metadata: Json[MetadataChanges] | None = Field(
@@ -243,6 +252,9 @@ class ClipPatch(Incoming):
     person: Label | None = None
     task: Label | None = None
     words: Words | None = None
+    captions: Captions | None = Field(
+        None, description="Sentences that describe the motion; they replace all earlier ones."
+    )
     license: Label | None = None
     source: Label | None = None
     metadata: MetadataChanges | None = Field(

@@ -11,7 +11,7 @@ from app.api.schemas.base import ROUNDED, Cursor, Incoming, Limit, Outgoing, Pro
 from app.api.schemas.clips import FileFrameRate, FormRoles, Stack, Unit, UpAxis
 from app.api.schemas.filters import Filter
 from app.api.schemas.query_source import ClipId
-from app.api.schemas.search import Expanded, Hit, UnknownWords
+from app.api.schemas.search import Confidence, Expanded, Hit, UnknownWords
 from app.search.example.methods import Method
 from app.services.find.by_parts import MAX_EXAMPLES, MAX_WEIGHT
 from app.services.find.queries import ComposedQuery, Example
@@ -71,7 +71,7 @@ class _ComposedOptions(Incoming):
         "the 300 clips that fit best by vectors and words; the others follow in that order. One "
         "example alone is compared with every clip, as in a search by example.",
     )
-    mode: Literal["default", "cca"] = Field(
+    mode: Literal["default", "cca", "printed"] = Field(
         "default", description="How clips are ranked by words, as in a search by words."
     )
     limit: Limit = 10
@@ -202,3 +202,4 @@ class ComposedHits(Outgoing):
     next: str | None
     unknown_words: UnknownWords
     expanded: Expanded
+    confidence: Confidence

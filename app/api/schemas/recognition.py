@@ -29,6 +29,11 @@ class _RecognitionOptions(QueryFields):
         None, description=f"Recognize the person given the task. {_NEW}"
     )
 
+    word_mode: Literal["default", "cca", "printed"] = Field(
+        "default",
+        description="How words are predicted: as in a search by words.",
+    )
+
     def query(self, source: QuerySource) -> RecognizeQuery:
         """The recognition of a motion."""
         return RecognizeQuery(
@@ -36,6 +41,7 @@ class _RecognitionOptions(QueryFields):
             known_person=self.known_person,
             known_task=self.known_task,
             method=self.method,
+            word_mode=self.word_mode,
         )
 
 

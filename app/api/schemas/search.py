@@ -110,11 +110,14 @@ class WordSearch(Incoming):
             "understood. A word with a minus before it (-left) leaves out the clips that carry it."
         ),
     )
-    mode: Literal["default", "cca"] = Field(
+    mode: Literal["default", "cca", "printed"] = Field(
         "default",
         description=(
             "How clips are ranked. default: by a kernel regression from motion features to words. "
-            "cca: by the angle in Takano's correlated space of motion symbols and words."
+            "cca: by the angle in Takano's correlated space of motion symbols and words, with a "
+            "ridge and with as many dimensions as predict held-out words best. printed: by the "
+            "distance in that space as Takano printed it, with the pseudo-inverse and 10 "
+            "dimensions."
         ),
     )
     limit: Limit = 10
@@ -184,7 +187,8 @@ class WordHit(Hit):
         ),
     )
     distance: float = Field(
-        description="-ln(score) in mode default; 1 - cosine, 0 to 2, in mode cca."
+        description="-ln(score) in mode default; 1 - cosine, 0 to 2, in mode cca; Euclidean in "
+        "mode printed."
     )
 
 
@@ -196,7 +200,18 @@ UnknownWords = Annotated[list[str], Field(description="Words that no clip carrie
 Expanded = Annotated[
     dict[str, list[str]],
     BeforeValidator(_none_as_empty),
-    Field(description="For each unknown word, the words that were used instead."),
+    Field(
+        description="For each word that no clip carries, the words that were used instead: words "
+        "of the library, or a detector of what the word names (`left foot moves`)."
+    ),
+]
+Confidence = Annotated[
+    dict[str, Probability],
+    BeforeValidator(_none_as_empty),
+    Field(
+        description="For each word of `expanded`, how sure it is that the replacement means the "
+        "same: 1 for another form of the word. Scores are multiplied by it."
+    ),
 ]
 
 
@@ -210,3 +225,4 @@ class WordHits(Outgoing):
     next: str | None
     unknown_words: UnknownWords
     expanded: Expanded
+    confidence: Confidence

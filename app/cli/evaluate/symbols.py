@@ -16,6 +16,8 @@ from app.cli.options import FilterJson
 from app.cli.output import AsJson, print_text
 from app.cli.settings import open_library
 from app.models.held_out.symbols import SymbolFigures
+from app.models.words.correlated_words import chosen_dimensions
+from app.models.words.symbol_space import DIMENSIONS
 
 Picture = Annotated[
     Path | None, typer.Option(help="Draw error against dimensions: a .svg, .png or .pdf file.")
@@ -47,3 +49,16 @@ def _print(found: SymbolFigures) -> None:
         f"landmarks. Rank correlation (Spearman) of the fast divergence with Monte Carlo, over "
         f"{found.pairs} pairs: {found.agreement:.4f}."
     )
+    paper = next((one for one in found.errors if one.dimensions == DIMENSIONS), None)
+    if paper is not None and paper.gamma is not None:
+        print_text(
+            f"Takano takes {DIMENSIONS} dimensions, where one more lowers his error by gamma = "
+            f"0.001; here gamma({DIMENSIONS}) = {paper.gamma:.3f}. The word mode `printed` has "
+            f"{DIMENSIONS}."
+        )
+    if found.losses:
+        losses = ", ".join(f"{count}: {loss:.4f}" for count, loss in found.losses.items())
+        print_text(
+            f"The word mode `cca` has {chosen_dimensions(found.losses)}, which predict held-out "
+            f"words best; log loss by dimensions: {losses}."
+        )

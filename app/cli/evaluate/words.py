@@ -17,6 +17,7 @@ from app.cli.output import AsJson, print_table, print_text
 from app.cli.settings import open_library
 from app.evaluate import WordExample
 from app.evaluate.words.document import word_document
+from app.evaluate.words.evaluation import PAPER
 from app.models.held_out.words import (
     MIN_RECORDINGS,
     RECALLS,
@@ -70,6 +71,11 @@ def _print(found: WordEvaluation, examples: Sequence[WordExample]) -> None:
     _print_figures("held_out", found.figures)
     typer.echo("\nIn-sample, as the paper judged retrieval (section 3):\n")
     _print_figures("in_sample", found.in_sample)
+    typer.echo(
+        "\nTakano's figures (618 motions, 253 words) and yours: F and MAP of label sets in-sample, "
+        "top-3 words with one recording left out:\n"
+    )
+    _print_paper(found)
     typer.echo("\nPrecision of single words at a recall, held out (figure 7):\n")
     _print_curves(found.figures)
     for method, one in found.reliability.items():
@@ -79,6 +85,8 @@ def _print(found: WordEvaluation, examples: Sequence[WordExample]) -> None:
             f"frequency {one.prior_brier:.4f}); {one.set_error:.4f} and {one.set_brier:.4f} "
             "of whole label sets."
         )
+    losses = ", ".join(f"{count}: {loss:.4f}" for count, loss in found.losses.items())
+    print_text(f"Log loss of held-out words in the mode cca, by dimensions: {losses}.")
     for kind, correlations in found.correlations.items():
         shown = " ".join(f"{one:.3f}" for one in correlations)
         print_text(f"Canonical correlations ({kind.replace('_', '-')}): {shown}")
@@ -95,6 +103,20 @@ def _print_figures(name: str, figures: Sequence[WordFigures]) -> None:
         [
             [f.method, f.top_3_recognition, f.word_f, f.word_map, f.set_f, f.set_map]
             for f in figures
+        ],
+    )
+
+
+def _print_paper(found: WordEvaluation) -> None:
+    by_method = {one.method: one for one in found.in_sample}
+    own = [by_method["printed"], by_method["cca"]]
+    show_table(
+        "paper",
+        ["", "the paper", "printed", "cca"],
+        [
+            ["set F", PAPER["set_f"], *(one.set_f for one in own)],
+            ["set MAP", PAPER["set_map"], *(one.set_map for one in own)],
+            ["top-3 words", PAPER["top_3_left_out"], *(found.left_out[m.method] for m in own)],
         ],
     )
 
@@ -141,10 +163,12 @@ def _print_words(by_word: Sequence[JudgedWord]) -> None:
 
 def _print_example(example: WordExample) -> None:
     query = " ".join(example.words)
-    typer.echo(f"\nNearest to {', '.join(example.words)} in the correlated space (table 2):\n")
-    columns = ["clip", "distance / shortest", "carries", "words"]
+    meant = [f"{word} as {', '.join(used)}" for word, used in example.expanded.items()]
+    told = f" ({'; '.join(meant)})" if meant else ""
+    typer.echo(f"\nNearest to {query}{told} in the correlated space as printed (table 2):\n")
+    columns = ["clip", "distance", "distance / shortest", "carries", "words"]
     rows = [
-        [near.name, near.ratio, "yes" if near.carries else "", " ".join(near.words)]
+        [near.name, near.distance, near.ratio, "yes" if near.carries else "", " ".join(near.words)]
         for near in example.nearest
     ]
     keep_table("examples", ["query", *columns], [[query, *row] for row in rows])

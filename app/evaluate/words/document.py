@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
-from app.evaluate.words.evaluation import WordExample
+from app.evaluate.words.evaluation import PAPER, WordExample
 from app.models.held_out.words import MIN_RECORDINGS, RECALLS, WordEvaluation
 
 
@@ -16,5 +16,6 @@ def word_document(found: WordEvaluation, examples: Sequence[WordExample]) -> dic
     return document | {
         "recalls": RECALLS.tolist(),
         "least_recordings": MIN_RECORDINGS,
+        "paper": PAPER,
         "examples": [asdict(example) for example in examples],
     }

@@ -6,6 +6,7 @@ import numpy as np
 
 from app.evaluate.charts import Curve, Format, Panel, curves_picture
 from app.models.held_out.symbols import SymbolFigures, symbol_figures
+from app.models.words.correlated_words import chosen_dimensions
 from app.services.library.library import Library
 from app.services.training.training_set import read_training_set, ready_only
 from app.store.clips.filter import ClipFilter
@@ -13,7 +14,8 @@ from app.store.clips.filter import ClipFilter
 
 def judge_symbols(lib: Library, filter: ClipFilter | None = None) -> SymbolFigures:
     """The figures of the ready clips' symbols. Raises NotEnoughLabels."""
-    return symbol_figures(read_training_set(lib.store, ready_only(filter)).symbols)
+    training = read_training_set(lib.store, ready_only(filter))
+    return symbol_figures(training.symbols, training.label_sets, training.groups)
 
 
 def draw_symbols(found: SymbolFigures, form: Format) -> bytes:
@@ -34,4 +36,11 @@ def draw_symbols(found: SymbolFigures, form: Format) -> bytes:
         log_y=True,
         marked=(10,),
     )
-    return curves_picture([panel], form, title=f"{found.symbols} motion symbols", columns=1)
+    return curves_picture([panel], form, title=_title(found), columns=1)
+
+
+def _title(found: SymbolFigures) -> str:
+    if not found.losses:
+        return f"{found.symbols} motion symbols"
+    chosen = chosen_dimensions(found.losses)
+    return f"{found.symbols} motion symbols; the mode cca uses {chosen} dimensions"

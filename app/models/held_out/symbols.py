@@ -17,7 +17,16 @@ import numpy as np
 import scipy
 
 from app.errors import NotEnoughLabels
-from app.models.words.symbol_space import DIMENSIONS, landmark_rows, symbol_distances
+from app.models.words.correlated_space import MIN_CLIPS
+from app.models.words.correlated_words import CANDIDATES, dimension_losses
+from app.models.words.symbol_space import (
+    DIMENSIONS,
+    fit_symbol_spaces,
+    landmark_rows,
+    possible_dimensions,
+    symbol_distances,
+)
+from app.models.words.vocabulary import WordVocabulary
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm.divergence import expected_path_divergences, monte_carlo_divergence
 from app.numerics.hmm.model import GaussianHMM
@@ -55,7 +64,9 @@ class SymbolFigures:
     symbols: number of scaled symbols; errors: by number of dimensions; placing_error: for
     symbols that are placed by landmarks, the mean absolute difference between the distance and
     its target, divided by the mean target; fitting_error: the same for the landmarks; agreement:
-    Spearman's rank correlation of the fast and the Monte Carlo divergences, over `pairs` pairs.
+    Spearman's rank correlation of the fast and the Monte Carlo divergences, over `pairs` pairs;
+    losses: the mean log loss of held-out words by the number of dimensions of the space (of all
+    labeled clips), the smallest of which the word mode "cca" chooses; empty with too few words.
     """
 
     symbols: int
@@ -64,15 +75,22 @@ class SymbolFigures:
     fitting_error: float
     agreement: float
     pairs: int
+    losses: dict[int, float]
 
 
 def symbol_figures(
-    symbols: Sequence[GaussianHMM], *, compared: int = MONTE_CARLO_SYMBOLS, seed: int = 0
+    symbols: Sequence[GaussianHMM],
+    label_sets: Sequence[Sequence[str]] = (),
+    groups: Sequence[str] = (),
+    *,
+    compared: int = MONTE_CARLO_SYMBOLS,
+    seed: int = 0,
 ) -> SymbolFigures:
     """The figures of a library's symbols; deterministic for a seed.
 
-    compared: number of symbols whose pairs are estimated by Monte Carlo, which is slow.
-    Raises NotEnoughLabels with fewer than MIN_SYMBOLS symbols.
+    label_sets, groups: N, the words of each symbol's clip, and keys that files of one recording
+    share; without them there are no losses. compared: number of symbols whose pairs are estimated
+    by Monte Carlo, which is slow. Raises NotEnoughLabels with fewer than MIN_SYMBOLS symbols.
     """
     if len(symbols) < MIN_SYMBOLS:
         raise NotEnoughLabels(
@@ -91,7 +109,24 @@ def symbol_figures(
         fitting_error=fitting,
         agreement=_agreement(compared_symbols, seed),
         pairs=len(compared_symbols) * (len(compared_symbols) - 1),
+        losses=_losses(symbols, label_sets, groups),
     )
+
+
+def _losses(
+    symbols: Sequence[GaussianHMM], label_sets: Sequence[Sequence[str]], groups: Sequence[str]
+) -> dict[int, float]:
+    labeled = [row for row, words in enumerate(label_sets) if words]
+    if len(labeled) < MIN_CLIPS:
+        return {}
+    own = [symbols[row] for row in labeled]
+    counts = possible_dimensions(CANDIDATES, len(own))
+    spaces = fit_symbol_spaces(own, counts)
+    away = symbol_distances(own, spaces[0].landmarks)
+    points = {count: space.place_at(away) for count, space in zip(counts, spaces, strict=True)}
+    words = [label_sets[row] for row in labeled]
+    labels = WordVocabulary.of(words).label_matrix(words)
+    return dimension_losses(points, labels, [groups[row] for row in labeled])
 
 
 _Scaling = Callable[[FloatArray, int], FloatArray]

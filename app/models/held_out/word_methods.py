@@ -9,28 +9,39 @@ import numpy as np
 
 from app.models.words.calibration import WordCalibration, calibrate
 from app.models.words.correlated_space import CorrelatedSpace, fit_correlated_space
-from app.models.words.cosine_calibration import CosineCalibration, calibrate_cosines
+from app.models.words.correlated_words import (
+    CANDIDATES,
+    CCA,
+    CorrelatedWords,
+    chosen_dimensions,
+    dimension_losses,
+    fit_correlated_words,
+)
+from app.models.words.library import default_scores
 from app.models.words.model import clip_cosines, fit_word_model
-from app.models.words.symbol_space import DIMENSIONS, landmark_rows
+from app.models.words.symbol_space import DIMENSIONS, landmark_rows, possible_dimensions
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.mds import metric_mds, place
 
-PRIOR, DEFAULT, CCA_SCORE = "prior", "default", "cca-score"
+PRIOR, DEFAULT, CCA_SCORE, PRINTED = "prior", "default", "cca-score", "printed"
 
 
 @dataclass(frozen=True, slots=True)
 class LabeledClips:
     """N labeled clips.
 
-    distances: (N, N) of their symbols; statistics: (N, p); labels: (N, V); groups: N, equal for
-    files of one recording; fold: (N,); likelihoods: (N, N) log likelihood of each motion under
+    distances: (N, N) of their symbols; inputs: (N, p) of the word model; words: V; labels: (N, V);
+    groups: N, equal for files of one recording; persons: N, equal for clips of one person, or None;
+    fold: (N,); likelihoods: (N, N) log likelihood of each motion under
     each symbol, None without it.
     """
 
     distances: FloatArray
-    statistics: FloatArray
+    inputs: FloatArray
+    words: tuple[str, ...]
     labels: FloatArray
     groups: tuple[str, ...]
+    persons: tuple[str, ...] | None
     fold: IntArray
     likelihoods: FloatArray | None = None
 
@@ -50,71 +61,94 @@ class Scores:
 def score(clips: LabeledClips, training: IntArray, held_out: IntArray) -> dict[str, Scores]:
     """Scores of the held-out rows by each method, fitted on the training rows.
 
-    "cca" ranks by angle, as the search mode does. "cca-score" ranks by the probabilities that
-    the mode reports (a fold with fewer training clips of a word then ranks behind others).
-    "cca-distance" is Takano's retrieval as printed, by Euclidean distance; "cca-pinv" also uses
-    the pseudo-inverse instead of the ridge. "cca-symbol" is his recognition: a motion is
-    represented by its most likely training symbol. This needs likelihoods. The other methods
-    represent it by its own symbol.
+    "cca" ranks by angle, as the search mode does, with the number of dimensions that the training
+    rows choose. "cca-score" ranks by the probabilities that the mode reports (a fold with fewer
+    training clips of a word then ranks behind others). "cca-10" is "cca" with the paper's 10
+    dimensions. "printed" is Takano's retrieval as printed: 10 dimensions, the pseudo-inverse and
+    the Euclidean distance; "cca-distance" has the ridge instead. "cca-symbol" is his recognition:
+    a motion is represented by its most likely training symbol. This needs likelihoods. The other
+    methods represent it by its own symbol.
     """
     labels = clips.labels[training]
     own_groups = [clips.groups[row] for row in training]
     frequency = np.tile(labels.mean(axis=0), (len(held_out), 1))
-    model = fit_word_model(clips.statistics[training], labels)
-    curve = calibrate(model, clips.statistics[training], labels, own_groups)
-    points = symbol_points(clips, training)
-    space = fit_correlated_space(points[training], labels)
-    printed = fit_correlated_space(points[training], labels, ridge=0.0)
-    calibrations = tuple(
-        calibrate_cosines(points[training], labels, own_groups, cosines_of)
-        for cosines_of in (CorrelatedSpace.single_word_cosines, CorrelatedSpace.word_cosines)
-    )
+    who = None if clips.persons is None else [clips.persons[row] for row in training]
+    model = fit_word_model(clips.inputs[training], labels)
+    curve = calibrate(model, clips.inputs[training], labels, own_groups, who)
+    found = default_scores(model, curve, clips.words, clips.inputs[held_out])
+    points = all_symbol_points(clips, training)
+    count = chosen_dimensions(losses_of(clips, training, points))
+    own, few = points[count], points[DIMENSIONS]
+    words = fit_correlated_words(own[training], labels, own_groups, CCA)
+    ridged = fit_correlated_space(few[training], labels)
+    printed = fit_correlated_space(few[training], labels, ridge=0.0)
     scores = {
         PRIOR: _by_cosine(frequency),
-        DEFAULT: _by_surprise(curve, model.outputs(clips.statistics[held_out])),
-        "cca": _by_angle(space, points[held_out]),
-        CCA_SCORE: _by_chance(space, points[held_out], calibrations, curve),
-        "cca-distance": _by_distance(space, points[held_out]),
-        "cca-pinv": _by_distance(printed, points[held_out]),
+        DEFAULT: _by_surprise(curve, found),
+        CCA: _by_angle(words.space, own[held_out]),
+        CCA_SCORE: _by_chance(words, own[held_out], curve),
+        "cca-10": _by_angle(ridged, few[held_out]),
+        "cca-distance": _by_distance(ridged, few[held_out]),
+        PRINTED: _by_distance(printed, few[held_out]),
     }
     if clips.likelihoods is not None:
         likeliest = training[np.argmax(clips.likelihoods[np.ix_(held_out, training)], axis=1)]
-        scores["cca-symbol"] = _by_angle(space, points[likeliest])
+        scores["cca-symbol"] = _by_angle(words.space, own[likeliest])
     return scores
 
 
-def symbol_points(clips: LabeledClips, training: IntArray) -> FloatArray:
-    """(N, d) coordinates of all clips in the symbol space of the training rows.
+def all_symbol_points(clips: LabeledClips, training: IntArray) -> dict[int, FloatArray]:
+    """(N, d) coordinates of all clips in the symbol spaces of the training rows, by d.
 
-    As fit_symbol_space, but from distances that are computed once for all folds.
+    As fit_symbol_spaces, but from distances that are computed once for all folds.
     """
     rows = training[landmark_rows(len(training))]
-    landmarks = metric_mds(clips.distances[np.ix_(rows, rows)], DIMENSIONS)
-    return place(clips.distances[:, rows], landmarks)
+    among = clips.distances[np.ix_(rows, rows)]
+    return {
+        count: place(clips.distances[:, rows], metric_mds(among, count))
+        for count in possible_dimensions(CANDIDATES, len(training))
+    }
 
 
-def _by_surprise(curve: WordCalibration, outputs: FloatArray) -> Scores:
-    words = curve.probabilities(outputs)
+def losses_of(
+    clips: LabeledClips, training: IntArray, points: dict[int, FloatArray]
+) -> dict[int, float]:
+    """The mean log loss of held-out words among the training rows, by number of dimensions."""
+    own = {count: rows[training] for count, rows in points.items()}
+    groups = [clips.groups[row] for row in training]
+    return dimension_losses(own, clips.labels[training], groups)
+
+
+def left_out_words(
+    clips: LabeledClips, points: FloatArray, *, ridge: float, by_distance: bool
+) -> FloatArray:
+    """(N, V) scores of the words of each clip, by a correlated space of all other recordings.
+
+    points: (N, d). The symbol space, which knows no words, is that of all clips.
+    """
+    scores = np.zeros(clips.labels.shape)
+    groups = np.array(clips.groups)
+    for group in dict.fromkeys(clips.groups):
+        out = groups == group
+        space = fit_correlated_space(points[~out], clips.labels[~out], ridge=ridge)
+        words = space.word_distances if by_distance else space.word_cosines
+        scores[out] = (-1.0 if by_distance else 1.0) * words(points[out])
+    return scores
+
+
+def _by_surprise(curve: WordCalibration, words: FloatArray) -> Scores:
     return Scores(words, _each(lambda query: -curve.joint_surprise(words[:, query > 0.0])))
 
 
-def _by_chance(
-    space: CorrelatedSpace,
-    points: FloatArray,
-    calibrations: tuple[CosineCalibration, ...],
-    curve: WordCalibration,
-) -> Scores:
-    """The scores of the mode "cca"; clips by the logarithm, as in the default method.
-
-    calibrations: of words to clips, and of clips to words.
-    """
-    cosines, back = calibrations
+def _by_chance(words: CorrelatedWords, points: FloatArray, curve: WordCalibration) -> Scores:
+    """The scores of the mode "cca"; clips by the logarithm, as in the default method."""
+    shares = words.to_clips.shares[None]
 
     def for_query(query: FloatArray) -> FloatArray:
-        common = np.exp(-curve.joint_surprise(cosines.shares[None, query > 0.0]))
-        return np.asarray(np.log(cosines.probabilities(space.clip_cosines(points, query), common)))
+        common = np.exp(-curve.joint_surprise(shares[:, query > 0.0]))
+        return np.asarray(np.log(words.clip_scores(words.clip_distances(points, query), common)))
 
-    return Scores(back.of_words(space.word_cosines(points)), _each(for_query))
+    return Scores(words.word_scores(points), _each(for_query))
 
 
 def _by_angle(space: CorrelatedSpace, points: FloatArray) -> Scores:

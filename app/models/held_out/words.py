@@ -27,14 +27,18 @@ from app.models.held_out.ranking import (
 from app.models.held_out.word_methods import (
     CCA_SCORE,
     DEFAULT,
+    PRINTED,
     PRIOR,
     LabeledClips,
+    all_symbol_points,
+    left_out_words,
+    losses_of,
     score,
-    symbol_points,
 )
 from app.models.words.correlated_space import MIN_CLIPS, RIDGE, fit_correlated_space
+from app.models.words.correlated_words import CCA, chosen_dimensions
 from app.models.words.likeliest_symbols import likelihoods_of_symbols
-from app.models.words.symbol_space import symbol_distances
+from app.models.words.symbol_space import DIMENSIONS, symbol_distances
 from app.models.words.vocabulary import WordVocabulary
 from app.numerics.area_under_curve import area_under_curve
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
@@ -104,7 +108,9 @@ class WordEvaluation:
     figures: held out, one for each method; clips, words, folds: their numbers; in_sample: as in
     the paper; reliability: of the held-out scores of DEFAULT and CCA_SCORE as probabilities;
     correlations: canonical correlations of all clips by kind of inverse, falling; by_word: of
-    the default method, held out.
+    the default method, held out; left_out: top-3 recognition by a space of all other recordings,
+    by the modes CCA and PRINTED, empty if it was not asked for; losses: the mean log loss of
+    held-out words in the mode CCA by number of dimensions, the smallest of which it chooses.
     """
 
     figures: tuple[WordFigures, ...]
@@ -115,6 +121,8 @@ class WordEvaluation:
     reliability: dict[str, Reliability]
     correlations: dict[str, tuple[float, ...]]
     by_word: tuple[JudgedWord, ...]
+    left_out: dict[str, float]
+    losses: dict[int, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,20 +140,23 @@ class _Tables:
 
 def held_out_word_figures(
     symbols: Sequence[GaussianHMM],
-    statistics: FloatArray,
+    inputs: FloatArray,
     label_sets: Sequence[Sequence[str]],
     groups: Sequence[str],
     *,
+    persons: Sequence[str] | None = None,
     sequence: Callable[[int], FloatArray] | None = None,
+    leave_one_out: bool = False,
     seed: int = 0,
 ) -> WordEvaluation:
     """Figures of the prior (word frequency), the default word model, and the variants of the cca
     mode (see word_methods).
 
-    symbols: N; statistics: (N, p); label_sets: N; groups: N, equal for files of one recording
-    (see folds.recording_of); sequence: a function from a row to the channels (T, D) of its
-    motion. Without it, recognition through the most likely symbol is left out. Clips without
-    words are left out.
+    symbols: N; inputs: (N, p) of the word model; label_sets: N; groups: N, equal for files of one
+    recording (see folds.recording_of); persons: N, equal for clips of one person, if known;
+    sequence: a function from a row to the channels (T, D) of its motion. Without it, recognition
+    through the most likely symbol is left out. leave_one_out: whether to leave one recording out at
+    a time too, which takes seconds. Clips without words are left out.
 
     Raises NotEnoughLabels if there are too few clips to hold some out.
     """
@@ -164,9 +175,11 @@ def held_out_word_figures(
         )
     clips = LabeledClips(
         distances,
-        np.asarray(statistics)[chosen],
+        np.asarray(inputs)[chosen],
+        vocabulary.words,
         vocabulary.label_matrix(labels),
         tuple(own_groups),
+        None if persons is None else tuple(persons[row] for row in chosen),
         grouped_folds(own_groups, folds, seed=seed),
         likelihoods,
     )
@@ -177,6 +190,9 @@ def held_out_word_figures(
     ]
     everything = np.arange(len(chosen))
     held_out, in_sample = _tables(clips, parts), _tables(clips, [(everything, everything)])
+    points = all_symbol_points(clips, everything)
+    losses = losses_of(clips, everything, points)
+    chosen_points = points[chosen_dimensions(losses)]
     return WordEvaluation(
         figures=_all_figures(held_out, clips.labels),
         clips=len(chosen),
@@ -186,8 +202,10 @@ def held_out_word_figures(
         reliability={
             name: _reliability(held_out, name, clips.labels) for name in (DEFAULT, CCA_SCORE)
         },
-        correlations=_correlations(clips),
+        correlations=_correlations(clips, {RIDGE: chosen_points, 0.0: points[DIMENSIONS]}),
         by_word=_by_word(held_out[DEFAULT].singles, clips, vocabulary.words),
+        left_out=_left_out(clips, chosen_points, points[DIMENSIONS]) if leave_one_out else {},
+        losses=losses,
     )
 
 
@@ -277,11 +295,25 @@ def _by_word(
     return tuple(sorted(judged_words, key=lambda one: (-one.clips, one.word)))
 
 
-def _correlations(clips: LabeledClips) -> dict[str, tuple[float, ...]]:
-    points = symbol_points(clips, np.arange(len(clips.labels)))
+def _correlations(
+    clips: LabeledClips, points: dict[float, FloatArray]
+) -> dict[str, tuple[float, ...]]:
+    """points: of all clips by the ridge of a space."""
     return {
         name: tuple(
-            fit_correlated_space(points, clips.labels, ridge=ridge).pair.correlations.tolist()
+            fit_correlated_space(
+                points[ridge], clips.labels, ridge=ridge
+            ).pair.correlations.tolist()
         )
         for name, ridge in (("ridge", RIDGE), ("pseudo_inverse", 0.0))
+    }
+
+
+def _left_out(clips: LabeledClips, points: FloatArray, few: FloatArray) -> dict[str, float]:
+    carries = clips.labels > 0.0
+    cca = left_out_words(clips, points, ridge=RIDGE, by_distance=False)
+    printed = left_out_words(clips, few, ridge=0.0, by_distance=True)
+    return {
+        CCA: top_k_rate(cca, carries, TOP_WORDS),
+        PRINTED: top_k_rate(printed, carries, TOP_WORDS),
     }

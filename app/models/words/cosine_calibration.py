@@ -20,14 +20,19 @@ import numpy as np
 import scipy
 
 from app.models.folds import grouped_folds
-from app.models.words.correlated_space import MIN_CLIPS, CorrelatedSpace, fit_correlated_space
+from app.models.words.correlated_space import (
+    MIN_CLIPS,
+    RIDGE,
+    CorrelatedSpace,
+    fit_correlated_space,
+)
 from app.numerics.arrays import FloatArray
 
 FOLDS = 5
 MAX_CLIPS = 2000
 """Largest number of clips of the calibration; more clips change its three numbers very little."""
 
-LEVELS, SLOPES, WEIGHTS = (-10.0, 10.0), (0.5, 50.0), (0.0, 2.0)
+LEVELS, SLOPES, WEIGHTS = (-10.0, 10.0), (0.05, 50.0), (0.0, 2.0)
 """Bounds of level, slope and weight. With them, a score always rises with the cosine, and never
 falls with the frequency of a word."""
 
@@ -72,10 +77,19 @@ class CosineCalibration:
         return cls(arrays["shares"], meta["level"], meta["slope"], meta["weight"])
 
 
+@dataclass(frozen=True, slots=True)
+class Calibrated:
+    """A calibration, and the mean log loss of the held-out clips that it was fitted on; without
+    held-out clips, that of the words' shares."""
+
+    curve: CosineCalibration
+    loss: float
+
+
 Cosines = Callable[[CorrelatedSpace, FloatArray], FloatArray]
 """Computes cosines (N, V) from a space and symbol coordinates (N, d). It is
 CorrelatedSpace.single_word_cosines to find clips by words, and CorrelatedSpace.word_cosines to find
-words by clips."""
+words by clips; for the paper's own space, the negative distances instead."""
 
 
 def calibrate_cosines(
@@ -84,36 +98,43 @@ def calibrate_cosines(
     groups: Sequence[str],
     cosines_of: Cosines = CorrelatedSpace.single_word_cosines,
     *,
+    ridge: float = RIDGE,
     seed: int = 0,
-) -> CosineCalibration:
+) -> Calibrated:
     """Learn the relation between cosines in a correlated space and the words of held-out clips.
 
     points: (n, d) symbol coordinates; labels: (n, V); groups: n, clips of one group are held out
-    together. Deterministic for a seed.
+    together; ridge: of the space. Deterministic for a seed.
     """
     # half a clip more, so that no share is 0 or 1
     shares = (labels.sum(axis=0) + 0.5) / (len(labels) + 1.0)
     chosen = np.sort(np.random.RandomState(seed).permutation(len(points))[:MAX_CLIPS])
     rows, truth, own = points[chosen], labels[chosen], [groups[row] for row in chosen]
     folds = min(FOLDS, len(set(own)))
+    unjudged = Calibrated(CosineCalibration(shares, *START), _loss_of_shares(shares))
     if folds < 2:
-        return CosineCalibration(shares, *START)
+        return unjudged
     fold = grouped_folds(own, folds, seed=seed)
     # every fold must leave enough clips for a correlated space
     if np.bincount(fold).max() > len(rows) - MIN_CLIPS:
-        return CosineCalibration(shares, *START)
+        return unjudged
     cosines = np.zeros(truth.shape)
     for one in range(folds):
         held_out = fold == one
-        space = fit_correlated_space(rows[~held_out], truth[~held_out])
+        space = fit_correlated_space(rows[~held_out], truth[~held_out], ridge=ridge)
         cosines[held_out] = cosines_of(space, rows[held_out])
-    return CosineCalibration(shares, *_likeliest(cosines, shares, truth))
+    curve, loss = _likeliest(cosines, shares, truth)
+    return Calibrated(CosineCalibration(shares, *curve), loss)
+
+
+def _loss_of_shares(shares: FloatArray) -> float:
+    return float(-(shares * np.log(shares) + (1.0 - shares) * np.log1p(-shares)).mean())
 
 
 def _likeliest(
     cosines: FloatArray, shares: FloatArray, truth: FloatArray
-) -> tuple[float, float, float]:
-    """Level, slope and weight with the largest likelihood of `truth` (n, V)."""
+) -> tuple[tuple[float, float, float], float]:
+    """Level, slope and weight with the largest likelihood of `truth` (n, V), and their loss."""
     terms = np.stack(
         [np.ones(cosines.size), cosines.ravel(), np.tile(_log_odds(shares), len(cosines))], axis=1
     )
@@ -125,10 +146,9 @@ def _likeliest(
         return float(np.mean(np.logaddexp(0.0, odds) - is_true * odds)), errors @ terms / len(terms)
 
     bounds = (LEVELS, SLOPES, WEIGHTS)
-    level, slope, weight = scipy.optimize.minimize(
-        loss, START, jac=True, method="L-BFGS-B", bounds=bounds
-    ).x
-    return float(level), float(slope), float(weight)
+    found = scipy.optimize.minimize(loss, START, jac=True, method="L-BFGS-B", bounds=bounds)
+    level, slope, weight = found.x
+    return (float(level), float(slope), float(weight)), float(found.fun)
 
 
 def _log_odds(shares: FloatArray | float) -> FloatArray:

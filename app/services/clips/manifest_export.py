@@ -23,7 +23,7 @@ from app.store.database.engine import Tx
 
 BATCH = 500
 """Clips that are read at a time."""
-LABELS = ("name", "person", "task", "words", "license", "source")
+LABELS = ("name", "person", "task", "words", "license", "source", "captions")
 HINTS = ("frame_rate", "unit", "audio_offset", "tempo", "beats")
 KEYPOSES = "keyposes"
 
@@ -48,7 +48,8 @@ def _rows(tx: Tx, ids: Sequence[str], keys: Sequence[str]) -> Iterator[list[str]
     for clip in clips.get_many(tx, ids).values():
         yield [
             guarded(clip.path or clip.file_name),
-            *(guarded(_cell(getattr(clip, name))) for name in LABELS),
+            *(guarded(_cell(getattr(clip, name))) for name in LABELS[:-1]),
+            guarded(" | ".join(clip.captions)),
             *(_cell(_hint(clip, name)) for name in HINTS),
             _cell(keyposes.get(clip.id)),
             *(_metadata_cell(clip, key) for key in keys),

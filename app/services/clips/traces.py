@@ -4,8 +4,8 @@ In the clips of the person, the name is replaced wherever it is. In the clips of
 equals the name is removed, and a folder of the path or a part of the source that equals it is
 replaced: no other text, because a name can be a common word too, and the person "Max" is not in
 `max_speed.bvh`. In lists of imported files, a name with a letter is replaced wherever it is.
-Metadata that hold the name are removed from all clips; a name without a letter, only from those
-of the person, and where the whole value equals it.
+Metadata and captions that hold the name are removed from all clips; a name without a letter, only
+from those of the person, and where the whole value equals it.
 """
 
 from __future__ import annotations
@@ -42,12 +42,13 @@ def _cleaned(remover: NameRemover, clip: ClipTexts, is_own: bool) -> ClipTexts:
         if not _is_named(remover, as_text(value), is_own)
     }
     words = tuple(word for word in clip.words if not remover.is_name(word))
+    captions = tuple(text for text in clip.captions if not _is_named(remover, text, is_own))
     imported = {
         name: value
         for name, value in clip.imported.items()
         if not _names_person(remover, name, value, is_own)
     }
-    changed = replace(clip, metadata=metadata, words=words, imported=imported)
+    changed = replace(clip, metadata=metadata, captions=captions, words=words, imported=imported)
     if is_own:
         return replace(
             changed,
@@ -75,6 +76,8 @@ def _names_person(remover: NameRemover, field: str, value: Any, is_own: bool) ->
     """Whether a label or hint that came with the file names the person."""
     if field == "person":
         return isinstance(value, str) and remover.is_name(value)
+    if field == "captions" and value is not None:
+        return any(_is_named(remover, text, is_own) for text in value)
     if isinstance(value, list):
         return any(isinstance(one, str) and remover.is_name(one) for one in value)
     if field.startswith(META) and value is not None:

@@ -131,6 +131,7 @@ def _by_all(lib: Library, query: ComposedQuery) -> Hits:
         next=found.next,
         unknown_words=asked.unknown if asked else (),
         expanded=dict(asked.expanded) if asked else {},
+        confidence=dict(asked.confidence) if asked else {},
     )
 
 

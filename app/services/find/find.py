@@ -80,6 +80,7 @@ def find_words(lib: Library, query: WordQuery, clips: LabelView | None = None) -
         next=page.next,
         unknown_words=found.asked.unknown,
         expanded=dict(found.asked.expanded),
+        confidence=dict(found.asked.confidence),
     )
 
 

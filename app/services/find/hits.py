@@ -49,8 +49,8 @@ class Hits:
 
     method: the method of the ranking; took_ms: milliseconds; library_version: of the library that
     was searched; next: cursor of the following page, None after the last one; unknown_words: words
-    of a search by words that the model does not know; expanded: words that replaced an unknown
-    word, by unknown word.
+    of a search by words that the model does not know; expanded: words or detectors that replaced
+    an unknown word, by unknown word; confidence: how sure that is, 0..1, by unknown word.
     """
 
     method: str
@@ -60,6 +60,7 @@ class Hits:
     next: str | None = None
     unknown_words: tuple[str, ...] = ()
     expanded: dict[str, tuple[str, ...]] | None = None
+    confidence: dict[str, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)

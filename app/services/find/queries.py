@@ -11,7 +11,8 @@ from app.services.find.query_source import QuerySource
 from app.store.clips.filter import ClipFilter
 
 DEFAULT_LIMIT = 10
-WORD_MODES = ("default", "cca")
+WORD_MODES = ("default", "cca", "printed")
+"""Kernel ridge; Takano's correlated space with a ridge and angles; and as he printed it."""
 SCOPES = ("clips", "windows", "segments")
 TEMPOS = ("any", "same")
 RANKED_BY_IN_SEGMENTS = Method.VECTOR
@@ -47,7 +48,7 @@ class MotionQuery:
 
 @dataclass(frozen=True, slots=True)
 class WordQuery:
-    """A search by words: mode "default" (kernel ridge) or "cca" (Takano's correlated space).
+    """A search by words: its mode is one of WORD_MODES.
 
     words: words, phrases or sentences; a word with a minus before it (-left) excludes the clips
     that carry it; clip_fields: as in `MotionQuery`.

@@ -142,9 +142,11 @@ def _describe_upload(
     lib: Library, source: QuerySource, request: AnalysisRequest, names: tuple[str, ...]
 ) -> Arrays:
     analysis = lib.pool.analyze(request)
-    if source.is_whole:
-        return analysis.arrays
-    return _described(cut(analysis.motion, source.start, source.end), names)
+    if not source.is_whole:
+        return _described(cut(analysis.motion, source.start, source.end), names)
+    # the motion symbol is slow, so an upload has it only if it is asked for
+    missing = tuple(name for name in names if name not in analysis.arrays)
+    return analysis.arrays | _described(analysis.motion, missing) if missing else analysis.arrays
 
 
 def _stored_as(lib: Library, request: AnalysisRequest) -> ClipRecord | None:
@@ -159,7 +161,7 @@ def _stored_as(lib: Library, request: AnalysisRequest) -> ClipRecord | None:
     return clip if clip is not None and clip.hints.stack == request.stack else None
 
 
-def _described(motion: Motion, names: tuple[str, ...]) -> Arrays:
+def _described(motion: Motion, names: tuple[str, ...]) -> dict[str, FloatArray]:
     """The named descriptors of a part of a motion, computed in this process."""
     # The analysis is slow to import, and a search by a whole clip does not need it.
     from app.analysis.analyze import describe_for_search

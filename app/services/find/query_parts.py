@@ -80,7 +80,7 @@ class QueryParts:
     def ranked(self, paging: Paging) -> tuple[PartsRanking, Scales]:
         """The ranking of all clips that pass, and the scales for the cursor of the next page."""
         mask = self._candidates()
-        words = self.words if self.words and self.words.asked.weights else None
+        words = self.words if self.words and self.words.asked.items else None
         numbers: IntArray
         of_words: list[Evidence]
         if words is None:

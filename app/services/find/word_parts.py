@@ -79,7 +79,7 @@ class WordParts:
         has only words with a minus.
         """
         asked = self.fitted.model.ask([text])
-        if not asked.weights and not asked.excluded:
+        if not asked.items and not asked.excluded:
             return []
         mask = np.zeros(len(self.clips.ids), dtype=bool)
         mask[numbers] = True

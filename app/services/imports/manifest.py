@@ -1,10 +1,11 @@
 """manifest.csv: the labels, hints, metadata, keyposes and recordings of the files in an import.
 
 Columns: `path` (relative to the manifest), and any of `name person task words license source
-fps unit up_axis keyposes audio audio_offset tempo beats`; `frame_rate` is another name of `fps`.
-Words are separated by spaces, a phrase has underscores; keyposes and beats are seconds, separated
-by spaces; audio is a path like `path`. Any other column is a key of the metadata (`columns`). A
-bad row does not fail the import: its problem is reported with its file.
+captions fps unit up_axis keyposes audio audio_offset tempo beats`; `frame_rate` is another name of
+`fps`. Words are separated by spaces, a phrase has underscores; captions are separated by |;
+keyposes and beats are seconds, separated by spaces; audio is a path like `path`. Any other column
+is a key of the metadata (`columns`). A bad row does not fail the import: its problem is reported
+with its file.
 
 `manifest_table` reads a manifest as a stream. Only the text of each row is kept in memory; it is
 checked when its file is registered.

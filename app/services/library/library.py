@@ -33,11 +33,11 @@ class Library:
 
     health: whether the store can do its work; the API server starts it. index: the motion vectors
     of all clips; paced: the same at a common pace. arrays: descriptors in memory, for ranking
-    again. word_scores, symbol_points: the outputs of the word models for the clips in the index.
-    pool: analyzes uploaded queries; a worker has its own pool. windows: the windows of all clips,
-    by the name of their scale; segments: the segments of all clips; poses: the pose covers of all
-    clips; the first search that needs paced or one of these three loads it. metrics: the clips'
-    coordinates in each learned metric.
+    again. word_scores, symbol_points, cca_points: the outputs of the word models for the indexed
+    clips. pool: analyzes uploaded queries; a worker has its own pool. windows: the windows of all
+    clips, by the name of their scale; segments: the segments of all clips; poses: the pose covers
+    of all clips; the first search that needs paced or one of these three loads it. metrics: the
+    clips' coordinates in each learned metric.
     """
 
     settings: Settings
@@ -49,6 +49,7 @@ class Library:
     models: FittedModels
     word_scores: ModelRows
     symbol_points: ModelRows
+    cca_points: ModelRows
     pool: AnalysisPool
     windows: Mapping[str, VectorIndex]
     segments: VectorIndex
@@ -79,6 +80,7 @@ class Library:
             models=FittedModels(),
             word_scores=ModelRows(),
             symbol_points=ModelRows(),
+            cca_points=ModelRows(),
             pool=AnalysisPool(query_limits(settings), cache=cache_folder(settings)),
             windows={
                 scale.name: VectorIndex(layout=parts_layout(scale.vectors, scale.spans, WIDTH))

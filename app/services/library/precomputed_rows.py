@@ -19,6 +19,7 @@ from app.store.clips import versions as library
 
 OUTPUTS = f"{models.CLIP_ARRAY_PREFIX}outputs"
 POINTS = f"{models.CLIP_ARRAY_PREFIX}points"
+CCA_POINTS = f"{models.CLIP_ARRAY_PREFIX}cca_points"
 IDS = f"{models.CLIP_ARRAY_PREFIX}ids"
 MAX_VALUES = 50_000_000
 """Largest number of stored word scores (200 MB as float32). If a library has more, none are
@@ -26,12 +27,16 @@ stored, and searches compute what they need."""
 
 
 def precomputed_arrays(
-    ids: Sequence[str], outputs: FloatArray | None, points: FloatArray
+    ids: Sequence[str],
+    outputs: FloatArray | None,
+    points: FloatArray,
+    cca_points: FloatArray | None = None,
 ) -> dict[str, NDArray[Any]]:
     """The arrays to store with a model, by name.
 
     ids: of N clips; outputs: (N, V) their scores for V words, None for a learned metric; points:
-    (N, d) their coordinates in the model's space. Both are stored as float32.
+    (N, d) their coordinates in the model's space; cca_points: in that of the word mode "cca". All
+    are stored as float32.
     """
     if not ids:
         return {}
@@ -41,13 +46,15 @@ def precomputed_arrays(
     }
     if outputs is not None and outputs.size <= MAX_VALUES:
         stored[OUTPUTS] = outputs.astype(np.float32)
+    if cca_points is not None:
+        stored[CCA_POINTS] = cca_points.astype(np.float32)
     return stored
 
 
 def read_precomputed(lib: Library, model_id: str, name: str) -> tuple[Sequence[str], FloatArray]:
     """The stored rows of a model, for the clips that did not change since its fit.
 
-    name: OUTPUTS or POINTS. Returns n ids and their rows (n, width).
+    name: OUTPUTS, POINTS or CCA_POINTS. Returns n ids and their rows (n, width).
     """
     with lib.store.read() as tx:
         stored = models.load_arrays(tx, model_id, (IDS, name))

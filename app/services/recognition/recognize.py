@@ -13,8 +13,9 @@ from app.models.recognition.perera import recognize_by_tensor
 from app.models.recognition.recognizer import recognize as recognize_by_default
 from app.numerics.arrays import FloatArray
 from app.services import fields
-from app.services.find.by_words import STATISTICS
-from app.services.find.query import describe
+from app.services.find.by_words import word_arrays, word_scores
+from app.services.find.queries import WORD_MODES
+from app.services.find.query import Arrays, describe
 from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
 
@@ -40,13 +41,14 @@ class RecognizeQuery:
     """The motion to recognize.
 
     known_person, known_task: labels that the client already knows; the answer contains them;
-    method: one of METHODS.
+    method: one of METHODS; word_mode: one of WORD_MODES, how words are predicted.
     """
 
     source: QuerySource
     known_person: str | None = None
     known_task: str | None = None
     method: str = "default"
+    word_mode: str = "default"
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,8 +69,11 @@ def recognize(lib: Library, query: RecognizeQuery) -> Recognized:
     """The person, the task and the words of a motion.
 
     There are no words if no word model could be fitted. Raises BadField, ClipNotFound,
-    ClipNotReady, ModelNotFitted, and BadContent for an upload that cannot be used.
+    ClipNotReady, ModelNotFitted, BadContent for an upload that cannot be used, and NotEnoughLabels
+    if the word mode could not be fitted.
     """
+    if query.word_mode not in WORD_MODES:
+        raise fields.bad_field("word_mode", f"must be one of {', '.join(WORD_MODES)}")
     if query.method not in METHODS:
         raise fields.bad_field("method", f"must be one of {', '.join(METHODS)}")
     if query.method != "default" and not lib.settings.recognize_persons:
@@ -78,10 +83,10 @@ def recognize(lib: Library, query: RecognizeQuery) -> Recognized:
             " recognizes the task."
         )
     names = INPUTS.get(query.method, (SAMPLE,))
-    arrays = describe(lib, query.source, (*names, STATISTICS)).arrays
+    arrays = describe(lib, query.source, (*names, *word_arrays(query.word_mode))).arrays
     sample = np.concatenate([arrays[name] for name in names])
     answers = _person_and_task(lib, sample, query)
-    words = words_of(lib, arrays[STATISTICS])
+    words = words_of(lib, arrays, query.word_mode)
     return Recognized(answers.person, answers.task, query.method in CALIBRATED, words)
 
 
@@ -106,12 +111,12 @@ def _person_and_task(lib: Library, sample: FloatArray, query: RecognizeQuery) ->
     return found
 
 
-def words_of(lib: Library, statistics: FloatArray) -> WordScores:
-    """The best words for a clip's `symbol_statistics` (131,); empty without a word model."""
+def words_of(lib: Library, arrays: Arrays, mode: str) -> WordScores:
+    """The best words for a motion with the `word_arrays` of a mode; empty without a word model."""
     try:
         model = lib.models.words(lib.store).model
     except ModelNotFitted:
         return ()
-    scores = model.word_scores(statistics[None])[0]
+    scores = word_scores(model, arrays, mode)
     best = np.argsort(-scores, kind="stable")[:WORDS_SHOWN]
     return tuple((model.vocabulary.words[i], float(scores[i])) for i in best if scores[i] > 0)

@@ -6,16 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.analysis.symbols.symbol import SYMBOL_ARRAYS, symbol_from_arrays
 from app.models.words.language.inflection import base_forms
 from app.models.words.language.normalize import normalize_word
-from app.models.words.library import LibraryWords
-from app.numerics.arrays import FloatArray
 from app.services import fields
 from app.services.clips import labels
 from app.services.clips.catalogue import get_clip, update_clip
 from app.services.clips.labels import LabelCount
-from app.services.find.by_words import STATISTICS
+from app.services.find.by_words import word_arrays, word_scores
 from app.services.find.queries import WORD_MODES
 from app.services.library.library import Library
 from app.services.library.ready_clips import descriptors_of, ready_clip
@@ -32,9 +29,9 @@ Suggestions = tuple[tuple[str, float], ...]
 def suggest(lib: Library, clip_id: str, limit: int = 10, mode: str = "default") -> Suggestions:
     """Words that the clip does not carry but that the word model predicts for it.
 
-    mode: "default" predicts by kernel regression; "cca" by the position of the clip's symbol in
-    the correlated space. Raises ClipNotFound, ClipNotReady, ModelNotFitted, BadField, and
-    NotEnoughLabels if mode "cca" could not be fitted.
+    mode: "default" predicts by kernel regression; "cca" and "printed" by the position of the clip's
+    symbol in the correlated space. Raises ClipNotFound, ClipNotReady, ModelNotFitted, BadField, and
+    NotEnoughLabels if these modes could not be fitted.
     """
     if not 1 <= limit <= MAX_SUGGESTED:
         raise fields.bad_field("limit", f"must be from 1 to {MAX_SUGGESTED}")
@@ -42,25 +39,13 @@ def suggest(lib: Library, clip_id: str, limit: int = 10, mode: str = "default") 
         raise fields.bad_field("mode", f"must be one of {', '.join(WORD_MODES)}")
     clip = ready_clip(lib, clip_id)
     model = lib.models.words(lib.store).model
-    scores = (_scores_cca if mode == "cca" else _scores)(lib, model, clip)
+    with lib.store.read() as tx:
+        arrays = descriptors_of(tx, clip, word_arrays(mode))
+    scores = word_scores(model, arrays, mode)
     carried = model.vocabulary.label_matrix([clip.words])[0] > 0
     order = np.argsort(-np.where(carried, -1.0, scores), kind="stable")
     found = [(model.vocabulary.words[i], float(scores[i])) for i in order if not carried[i]]
     return tuple(pair for pair in found[:limit] if pair[1] > 0)
-
-
-def _scores(lib: Library, model: LibraryWords, clip: ClipRecord) -> FloatArray:
-    """(V,) scores of the vocabulary's words by the default mode."""
-    with lib.store.read() as tx:
-        statistics = descriptors_of(tx, clip, (STATISTICS,))[STATISTICS]
-    return np.asarray(model.word_scores(statistics[None])[0])
-
-
-def _scores_cca(lib: Library, model: LibraryWords, clip: ClipRecord) -> FloatArray:
-    with lib.store.read() as tx:
-        stored = descriptors_of(tx, clip, SYMBOL_ARRAYS)
-    points = model.space.place([symbol_from_arrays(stored)])
-    return np.asarray(model.word_scores_cca(points)[0])
 
 
 def accept(lib: Library, clip_id: str, words: Sequence[str] | None = None) -> ClipRecord:

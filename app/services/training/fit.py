@@ -124,7 +124,11 @@ def _before(store: Store, kind: ModelKind, wordnet: bool) -> Before:
 
 def _fit_words(training: TrainingSet, before: Before) -> Fit:
     fitted = fit_library_words(
-        training.symbols, training.statistics, training.label_sets, training.groups
+        training.symbols,
+        training.word_inputs,
+        training.label_sets,
+        training.groups,
+        training.strangers,
     )
     # Meanings are looked up once, since a look-up is slow: the model before has them already.
     earlier = Meanings.from_meta(before.meta.get("meanings", {}))
@@ -132,7 +136,8 @@ def _fit_words(training: TrainingSet, before: Before) -> Fit:
     model = replace(fitted.words, meanings=meanings)
     arrays, meta = model.to_arrays()
     ids = [clip.id for clip in training.clips]
-    arrays |= precomputed_arrays(ids, model.word_scores(training.statistics), fitted.points)
+    scores = model.all_scores(training.word_inputs)
+    arrays |= precomputed_arrays(ids, scores, fitted.points, fitted.cca_points)
     return Fit(arrays, meta, word_figures(training))
 
 
@@ -140,7 +145,11 @@ def word_figures(training: TrainingSet) -> Meta:
     """Held-out figures of the word models and the prior, or the reason why there are none."""
     try:
         found = held_out_word_figures(
-            training.symbols, training.statistics, training.label_sets, training.groups
+            training.symbols,
+            training.word_inputs,
+            training.label_sets,
+            training.groups,
+            persons=training.strangers,
         )
     except NotEnoughLabels as reason:
         return {"reason": reason.detail}

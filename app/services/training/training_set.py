@@ -12,6 +12,7 @@ from app.models.folds import recording_of
 from app.models.metric.learned_metric import INPUTS, ClipDescriptors
 from app.models.recognition.copies import ClipCopies, disturbed_copies, evenly_chosen
 from app.models.recognition.views import full_samples
+from app.models.words.language.captions import with_caption_words
 from app.motion.roles.joint_roles import ESSENTIAL_ROLES
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm.model import GaussianHMM
@@ -25,7 +26,8 @@ from app.store.clips.record import ClipRecord, ClipState
 from app.store.store import Store
 
 WIDE = "wide_motion_vector"
-NAMES = (*SYMBOL_ARRAYS, *INPUTS, WIDE)
+SIGNS = "movement_signs"
+NAMES = (*SYMBOL_ARRAYS, *INPUTS, WIDE, SIGNS)
 ANGLES = "angle_sample"
 POSITIONS = "role_positions"
 READY = ClipFilter(state=(ClipState.READY,))
@@ -35,11 +37,11 @@ READY = ClipFilter(state=(ClipState.READY,))
 class TrainingSet:
     """N ready clips, sorted by id, at a library version.
 
-    groups: (N,) equal for clips of one recording; symbols: N; statistics: (N, 131); samples:
-    (N, 1250); vectors: (N, 128); wide: (N, 512); angles: (642,) by clip id, missing for clips of
-    an analysis without joint angles; positions: (n, 13, 3) meters, by the id of the clips that are
-    copied (app.models.recognition.copies); is_anonymous: the set has no persons, since persons must
-    not be recognized.
+    groups: (N,) equal for clips of one recording; symbols: N; statistics: (N, 131); signs: (N, 44);
+    samples: (N, 1250); vectors: (N, 128); wide: (N, 512); angles: (642,) by clip id, missing for
+    clips of an analysis without joint angles; positions: (n, 13, 3) meters, by the id of the clips
+    that are copied (app.models.recognition.copies); is_anonymous: the set has no persons, since
+    persons must not be recognized.
     """
 
     library_version: int
@@ -47,6 +49,7 @@ class TrainingSet:
     groups: tuple[str, ...]
     symbols: tuple[GaussianHMM, ...]
     statistics: FloatArray
+    signs: FloatArray
     samples: FloatArray
     vectors: FloatArray
     wide: FloatArray
@@ -69,8 +72,22 @@ class TrainingSet:
 
     @property
     def label_sets(self) -> Sequence[tuple[str, ...]]:
-        """(N,) the words of each clip."""
-        return [clip.words for clip in self.clips]
+        """(N,) the words of each clip, and those of its captions."""
+        words = [clip.words for clip in self.clips]
+        return with_caption_words(words, [clip.captions for clip in self.clips])
+
+    @property
+    def word_inputs(self) -> FloatArray:
+        """(N, 175) the input of the word model."""
+        return np.hstack([self.statistics, self.signs])
+
+    @property
+    def strangers(self) -> Sequence[str]:
+        """(N,) equal for clips of one person of one source; of one recording without a person."""
+        return [
+            group if person is None else f"{clip.source}|{person}"
+            for clip, person, group in zip(self.clips, self.persons, self.groups, strict=True)
+        ]
 
     def with_angles(self) -> tuple[FloatArray, list[str | None], list[str | None], list[str]]:
         """Angle samples (M, 642), persons, tasks and groups of the clips that have angles."""
@@ -135,6 +152,7 @@ def read_training_set(store: Store, filter: ClipFilter = READY) -> TrainingSet:
             for clip_id in whole
         ),
         statistics=_stacked([found["symbol_statistics"][clip_id] for clip_id in whole]),
+        signs=_stacked([found[SIGNS][clip_id] for clip_id in whole]),
         samples=_stacked([found["motion_sample"][clip_id] for clip_id in whole]),
         vectors=_stacked([found["motion_vector"][clip_id] for clip_id in whole]),
         wide=_stacked([found[WIDE][clip_id] for clip_id in whole]),

@@ -61,8 +61,9 @@ class ClipLabels:
     """The name of a clip and what people say about it; searches filter by these labels.
 
     words: in lower case, without repetition. The callers of the store normalize all labels. A new
-    field here needs a column of the same name in the table `clips` (words and metadata have their
-    own tables). metadata: free values by key.
+    field here needs a column of the same name in the table `clips` (words, metadata and captions
+    have their own tables). metadata: free values by key. captions: sentences that describe the
+    motion.
     """
 
     name: str
@@ -72,6 +73,7 @@ class ClipLabels:
     license: str | None = None
     source: str | None = None
     metadata: Metadata = field(default_factory=dict)
+    captions: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from sqlalchemy import RowMapping, bindparam, delete, insert, select, update
 
 from app.errors import ClipNotFound
 from app.kinedex_error import Place
-from app.store.clips import clip_metadata, visibility
+from app.store.clips import clip_captions, clip_metadata, visibility
 from app.store.clips import versions as library
 from app.store.clips.record import (
     AUDIO_HINTS,
@@ -37,7 +37,7 @@ from app.store.database.engine import Tx
 from app.store.database.ids import new_id, utc_now
 from app.store.database.tables import clip_words, clips
 
-_SEARCHED = frozenset({"name", "path", "metadata"})
+_SEARCHED = frozenset({"name", "path", "metadata", "captions"})
 """The fields that `rows.searched_text` takes."""
 IDS_PER_QUERY = 500
 """A limit, because databases limit the number of parameters of one statement."""
@@ -120,7 +120,9 @@ def patch(tx: Tx, clip_id: str, changes: ClipChanges) -> ClipRecord:
         metadata = changed_metadata(before.metadata, changes)
         clip_metadata.put(tx, clip_id, metadata)
         name, path = changes.get("name", before.name), changes.get("path", before.path)
-        values["searched"] = searched_text(name, path, metadata)
+        captions = changes.get("captions", before.captions)
+        clip_captions.put(tx, clip_id, captions)
+        values["searched"] = searched_text(name, path, metadata, captions)
     if before.state is ClipState.READY and changes.keys() != {"imported"}:  # no search reads it
         values["changed_version"] = library.bump(tx)
     if values:
@@ -228,7 +230,9 @@ def _insert(tx: Tx, new: NewClip) -> ClipRecord:
         "file_size": new.file_size,
         "skeleton_sha256": new.skeleton_sha256,
         "content_key": new.content_key,
-        "searched": searched_text(new.labels.name, new.path, new.labels.metadata),
+        "searched": searched_text(
+            new.labels.name, new.path, new.labels.metadata, new.labels.captions
+        ),
         "state": ClipState.QUEUED.value,
         "changed_version": 0,
         "created_at": utc_now(),
@@ -236,6 +240,7 @@ def _insert(tx: Tx, new: NewClip) -> ClipRecord:
     tx.execute(_ADD, values)
     _add_words(tx, clip_id, new.labels.words)
     clip_metadata.add(tx, clip_id, new.labels.metadata)
+    clip_captions.add(tx, clip_id, new.labels.captions)
     return get(tx, clip_id)
 
 
@@ -307,8 +312,9 @@ def to_records(tx: Tx, rows: Sequence[RowMapping]) -> list[ClipRecord]:
     """Rows of `clips` as records, with what other tables hold of them."""
     ids = [row["id"] for row in rows]
     words, metadata = words_of(tx, ids), clip_metadata.get_many(tx, ids)
+    captions = clip_captions.get_many(tx, ids)
     return [
-        to_record(row, words.get(i, ()), metadata.get(i, {}))
+        to_record(row, words.get(i, ()), metadata.get(i, {}), captions.get(i, ()))
         for i, row in zip(ids, rows, strict=True)
     ]
 

@@ -6,7 +6,7 @@ and read without a change here.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from typing import Any
 
@@ -29,7 +29,7 @@ from app.store.clips.record import (
 )
 from app.store.database.tables import clips
 
-IN_OTHER_TABLES = ("words", "metadata")
+IN_OTHER_TABLES = ("words", "metadata", "captions")
 """Labels that are not columns of the table `clips`."""
 _LABELS = frozenset(field.name for field in fields(ClipLabels))
 _HINT_COLUMNS = {field.name: f"{field.name}_override" for field in fields(AnalysisHints)}
@@ -106,18 +106,24 @@ def changed_metadata(before: Metadata, changes: ClipChanges) -> Metadata:
     return {key: value for key, value in changed.items() if value is not None}
 
 
-def searched_text(name: str, path: str | None, metadata: Metadata) -> str:
-    """The text in which a list looks for a part of the name, the path or the metadata."""
+def searched_text(
+    name: str, path: str | None, metadata: Metadata, captions: Sequence[str] = ()
+) -> str:
+    """The text in which a list looks for parts of the name, path, metadata and captions."""
     texts = [name, path or "", *(value for value in metadata.values() if isinstance(value, str))]
+    texts += captions
     return "\n".join(texts).casefold()
 
 
-def to_record(row: RowMapping, words: tuple[str, ...], metadata: Metadata) -> ClipRecord:
-    """A row of `clips`, the clip's words and its metadata as a record."""
+def to_record(
+    row: RowMapping, words: tuple[str, ...], metadata: Metadata, captions: tuple[str, ...]
+) -> ClipRecord:
+    """A row of `clips`, the clip's words, its metadata and its captions as a record."""
     values: dict[str, Any] = {name: row[name] for name in _RECORD_COLUMNS}
     values |= {
         "words": words,
         "metadata": metadata,
+        "captions": captions,
         "imported": row["imported"] or {},
         "state": ClipState(row["state"]),
         "roles": dict(row["roles"] or {}),

@@ -8,8 +8,8 @@ from typing import Any
 
 from sqlalchemy import bindparam, case, delete, select, update
 
+from app.store.clips import clip_captions, repository
 from app.store.clips import clip_metadata as metadata_rows
-from app.store.clips import repository
 from app.store.clips import versions as library
 from app.store.clips.metadata_values import Metadata
 from app.store.clips.record import ClipState, folder_of
@@ -32,6 +32,7 @@ class ClipTexts:
     source: str | None
     audio_name: str | None
     imported: Mapping[str, Any]
+    captions: tuple[str, ...]
     words: tuple[str, ...]
     metadata: Metadata
 
@@ -53,8 +54,12 @@ def read(tx: Tx) -> Iterator[ClipTexts]:
     every = tx.execute(select(t.clips.c.id)).scalars().all()
     for ids in repository.in_batches(every, BATCH):
         words, metadata = repository.words_of(tx, ids), metadata_rows.get_many(tx, ids)
+        captions = clip_captions.get_many(tx, ids)
         for row in tx.execute(_TEXTS, {"ids": ids}).mappings():
-            values = dict(row) | {"imported": row["imported"] or {}}
+            values = dict(row) | {
+                "imported": row["imported"] or {},
+                "captions": captions.get(row["id"], ()),
+            }
             clip_id = row["id"]
             yield ClipTexts(
                 **values, words=words.get(clip_id, ()), metadata=metadata.get(clip_id, {})
@@ -79,6 +84,9 @@ def write(tx: Tx, changed: Sequence[tuple[ClipTexts, ClipTexts]]) -> None:
         for before, now in changed
         for key in before.metadata.keys() - now.metadata.keys()
     ]
+    for before, now in changed:
+        if before.captions != now.captions:
+            clip_captions.put(tx, now.id, now.captions)
     for statement, rows in ((_REMOVE_WORD, words), (_REMOVE_KEY, keys)):
         if rows:
             tx.execute(statement, rows)
@@ -90,5 +98,5 @@ def _row(clip: ClipTexts) -> dict[str, Any]:
         "the_id": clip.id,
         "name_folded": clip.name.casefold(),
         "folder": folder_of(clip.path),
-        "searched": searched_text(clip.name, clip.path, clip.metadata),
+        "searched": searched_text(clip.name, clip.path, clip.metadata, clip.captions),
     }

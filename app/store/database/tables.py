@@ -48,7 +48,7 @@ clips = Table(
     Column("path", String),
     # The path without its last part; "" for a file that was in no folder.
     Column("folder", String, index=True),
-    # The name, the path and the texts of the metadata, folded, one a line: see `rows`.
+    # The name, the path, the texts of the metadata and the captions, folded, one a line: `rows`.
     Column("searched", String, nullable=False, server_default=""),
     # The labels and hints that came with the file last: see `ClipRecord.imported`.
     json_column("imported"),
@@ -95,6 +95,14 @@ clip_words = Table(
     clip_key(primary_key=True),
     Column("word", String, primary_key=True, index=True),
     Column("position", Integer, nullable=False),
+)
+
+clip_captions = Table(
+    "clip_captions",
+    metadata,
+    clip_key(primary_key=True),
+    Column("position", Integer, primary_key=True, autoincrement=False),
+    Column("text", String, nullable=False),
 )
 
 clip_metadata = Table(

@@ -7,7 +7,16 @@ from pathlib import Path
 from tests.cli.conftest import Kinedex
 from tests.formats.csv.files import rows_of
 
-METHODS = ["prior", "default", "cca", "cca-score", "cca-distance", "cca-pinv", "cca-symbol"]
+METHODS = [
+    "prior",
+    "default",
+    "cca",
+    "cca-score",
+    "cca-10",
+    "cca-distance",
+    "printed",
+    "cca-symbol",
+]
 
 
 def test_tables_for_people(kinedex: Kinedex, tmp_path: Path) -> None:
@@ -20,10 +29,13 @@ def test_tables_for_people(kinedex: Kinedex, tmp_path: Path) -> None:
         "method",
         *["top-3", "words", "word", "F", "word", "MAP", "set", "F", "set", "MAP"],
     ]
-    assert [line.split()[0] for line in lines[3:10]] == METHODS
+    assert [line.split()[0] for line in lines[3:11]] == METHODS
+    assert "set MAP" in ended.out
+    assert "0.822" in ended.out
+    assert "Log loss of held-out words in the mode cca, by dimensions: 10: " in ended.out
     assert "Canonical correlations (pseudo-inverse): " in ended.out
     assert "Too rare to judge one by one, in fewer than 5 recordings: " in ended.out
-    assert "Nearest to wave in the correlated space (table 2):" in ended.out
+    assert "Nearest to wave in the correlated space as printed (table 2):" in ended.out
     assert picture.read_bytes().startswith(b"<?xml")
 
 
@@ -42,6 +54,8 @@ def test_json_and_csv_for_programs(kinedex: Kinedex, tmp_path: Path) -> None:
     assert {"word_error", "word_brier", "set_error"} <= result["reliability"]["default"].keys()
     ratios = [near["ratio"] for near in result["examples"][0]["nearest"]]
     assert ratios == sorted(ratios)
+    assert result["paper"] == {"set_f": 0.598, "set_map": 0.822, "top_3_left_out": 0.72}
+    assert result["left_out"].keys() == {"cca", "printed"}
 
 
 def test_wrong_options_are_refused(kinedex: Kinedex) -> None:

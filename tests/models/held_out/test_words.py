@@ -15,7 +15,7 @@ def test_every_method_beats_the_prior_on_separable_clips() -> None:
     found = held_out_word_figures(symbols, statistics, words, groups)
     assert (found.clips, found.words, found.folds) == (24, 7, 5)
     figures = {one.method: one for one in found.figures}
-    cca = ["cca", "cca-score", "cca-distance", "cca-pinv"]
+    cca = ["cca", "cca-score", "cca-10", "cca-distance", "printed"]
     assert list(figures) == ["prior", "default", *cca]
     assert figures["default"].word_f > figures["prior"].word_f
     assert figures["default"].top_3_recognition > 0.9
@@ -70,9 +70,16 @@ def test_curves_correlations_and_reliability_are_reported() -> None:
     held, seen = ({f.method: f for f in part} for part in (found.figures, found.in_sample))
     assert seen["default"].set_map >= held["default"].set_map
     assert list(found.reliability) == ["default", "cca-score"]
+    assert found.left_out == {}
+    assert list(found.losses) == [10]
     for told in found.reliability.values():
         assert told.word_brier < told.prior_brier
         assert 0.0 <= told.word_error < 0.2
+    left_out = held_out_word_figures(
+        symbols, statistics, words, [str(i) for i in range(len(words))], leave_one_out=True
+    ).left_out
+    assert left_out["cca"] > 0.8
+    assert 0.2 < left_out["printed"] <= 1.0
     printed, ridged = (found.correlations[kind] for kind in ("pseudo_inverse", "ridge"))
     assert list(printed) == sorted(printed, reverse=True)
     assert all(one <= other + 1e-9 for one, other in zip(ridged, printed, strict=True))

@@ -31,7 +31,7 @@ def groups(count: int) -> list[str]:
 def test_scores_of_new_clips_are_the_shares_that_carry_a_word() -> None:
     points, labels = clips(1500, 1)
     taught = points[:700], labels[:700]
-    space, made = fit_correlated_space(*taught), calibrate_cosines(*taught, groups(700))
+    space, made = fit_correlated_space(*taught), calibrate_cosines(*taught, groups(700)).curve
     found = made.of_words(space.single_word_cosines(points[700:]))
     truth = labels[700:]
     for low in (0.0, 0.25, 0.5):
@@ -43,7 +43,7 @@ def test_scores_of_new_clips_are_the_shares_that_carry_a_word() -> None:
 
 def test_at_the_same_angle_the_more_frequent_word_is_more_likely() -> None:
     points, labels = clips(400, 2)
-    made = calibrate_cosines(points, labels, groups(400))
+    made = calibrate_cosines(points, labels, groups(400)).curve
     common, rare = made.of_words(np.full((1, WORDS), 0.5))[0, [0, WORDS - 1]]
     assert common > rare + 0.1
 
@@ -58,7 +58,7 @@ def test_scores_rise_strictly_and_are_never_certain() -> None:
 @pytest.mark.parametrize("count", [3, 4])
 def test_with_too_few_clips_to_hold_out_there_is_still_a_curve(count: int) -> None:
     points, labels = clips(count, 3)
-    made = calibrate_cosines(points, labels, ["one"] * (count - 1) + ["other"])
+    made = calibrate_cosines(points, labels, ["one"] * (count - 1) + ["other"]).curve
     assert (made.level, made.slope, made.weight) == START
     assert ((made.shares > 0.0) & (made.shares < 1.0)).all()
 
@@ -66,14 +66,14 @@ def test_with_too_few_clips_to_hold_out_there_is_still_a_curve(count: int) -> No
 def test_words_of_all_or_no_clips_give_finite_scores() -> None:
     points, _ = clips(60, 4)
     labels = np.tile([1.0, 0.0], (60, 1))
-    made = calibrate_cosines(points, labels, groups(60))
+    made = calibrate_cosines(points, labels, groups(60)).curve
     found = made.of_words(np.zeros((1, 2)))[0]
     assert np.isfinite(found).all()
     assert found[0] > 0.8 > 0.2 > found[1]
 
 
 def test_a_record_is_stored_and_read_back() -> None:
-    made = calibrate_cosines(*clips(80, 5), groups(80))
+    made = calibrate_cosines(*clips(80, 5), groups(80)).curve
     arrays, meta = made.to_arrays()
     again = CosineCalibration.from_arrays(arrays, json.loads(json.dumps(meta)))
     cosines = np.linspace(-1.0, 1.0, WORDS)[None]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.errors import NotEnoughLabels
-from app.models.words.model import WordModel, clip_cosines, fit_word_model
+from app.models.words.model import STATISTICS, WordModel, clip_cosines, fit_word_model
 from app.models.words.vocabulary import WordVocabulary
 from tests.models.word_clips import word_clips
 
@@ -30,6 +30,19 @@ def test_a_record_comes_back_from_its_arrays() -> None:
     np.testing.assert_array_equal(again.predict(statistics), model.predict(statistics))
     with pytest.raises(ValueError, match="version 0"):
         WordModel.from_arrays(arrays, {**meta, "version": 0})
+
+
+def test_signs_decide_for_a_clip_whose_statistics_are_strange() -> None:
+    rng = np.random.default_rng(0)
+    labels = np.eye(2)[np.arange(40) % 2]
+    statistics = rng.normal(size=(40, STATISTICS))
+    signs = labels[:, :1] * 4.0 + rng.normal(size=(40, 3)) * 0.1
+    model = fit_word_model(np.hstack([statistics, signs]), labels)
+    strange = np.hstack([np.full((1, STATISTICS), 9.0), np.full((1, 3), 4.0)])
+    assert model.outputs(strange).argmax() == 0
+    assert model.nearest(strange)[0] > 10.0 * model.nearest(np.hstack([statistics, signs])).max()
+    again = WordModel.from_arrays(*model.to_arrays())
+    np.testing.assert_array_equal(again.outputs(strange), model.outputs(strange))
 
 
 @pytest.mark.parametrize("count", [1, 2, 4])

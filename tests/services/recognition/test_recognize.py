@@ -57,6 +57,25 @@ def test_an_upload_is_recognized_as_its_stored_twin(
     assert theirs.words[0] == pytest.approx(ours.words[0])
 
 
+@pytest.mark.parametrize("mode", ["cca", "printed"])
+def test_words_of_an_upload_and_of_a_part_are_predicted_in_a_correlated_space(
+    ready_library: Library, some_demo_clips: list[DemoClip], clip_of: FindClip, mode: str
+) -> None:
+    demo = next(c for c in some_demo_clips if (c.person, c.task) == ("chika", "bow"))
+    stored = QuerySource(clip_of("chika", "bow").id)
+    sent = QuerySource(content=io.BytesIO(demo.content))
+    theirs, ours = (
+        recognize.recognize(ready_library, RecognizeQuery(source, word_mode=mode)).words
+        for source in (sent, stored)
+    )
+    assert theirs[0] == pytest.approx(ours[0])
+    assert "bow" in dict(ours)  # words that the clip carries are predicted too
+    part = replace(stored, start=0.2, end=1.0)
+    assert recognize.recognize(ready_library, RecognizeQuery(part, word_mode=mode)).words
+    with pytest.raises(BadField, match="word_mode"):
+        recognize.recognize(ready_library, RecognizeQuery(stored, word_mode="guess"))
+
+
 def test_an_unknown_method_is_refused(ready_library: Library, clip_of: FindClip) -> None:
     with pytest.raises(BadField, match="method"):
         recognize.recognize(

@@ -171,6 +171,7 @@ def create_clip(
     person: str | None = None,
     task: str | None = None,
     words: str | Sequence[str] | None = None,
+    captions: str | None = None,
     license: str | None = None,
     source: str | None = None,
     metadata: str | Mapping[str, Any] | None = None,
@@ -197,6 +198,8 @@ def create_clip(
     audio: The recording that goes with the motion: WAV, FLAC, OGG or MP3.
     name: Default: the file's name.
     words: Separated by spaces. In a phrase, underscores replace spaces.
+    captions: Sentences that describe the motion, one a line (or separated by |). Their words
+        teach the word model like `words`.
     metadata: JSON: values of your own by key, as in {"condition": "fatigued", "age": 30}.
     path: Where the file was, relative to a folder of yours, as in `cmu/02/02_01.bvh`.
     on_conflict: If the library has the same bytes already, with other labels or hints: keep the
@@ -230,6 +233,7 @@ def create_clip(
             person=person,
             task=task,
             words=words,
+            captions=captions,
             license=license,
             source=source,
             metadata=metadata,
@@ -274,6 +278,7 @@ def update_clip(
     person: str | Unset | None = UNSET,
     task: str | Unset | None = UNSET,
     words: Sequence[str] | Unset | None = UNSET,
+    captions: Sequence[str] | Unset | None = UNSET,
     license: str | Unset | None = UNSET,
     source: str | Unset | None = UNSET,
     metadata: Mapping[str, bool | int | float | str | None] | Unset | None = UNSET,
@@ -286,6 +291,7 @@ def update_clip(
 ) -> Call[Clip]:
     """Correct the labels or hints of a clip.
 
+    captions: Sentences that describe the motion; they replace all earlier ones.
     metadata: Only the sent keys change. null deletes a key; null instead of the object deletes
         all.
     frame_rate: The clip is analyzed again. null restores the declared frame rate.
@@ -311,6 +317,7 @@ def update_clip(
             person=person,
             task=task,
             words=words,
+            captions=captions,
             license=license,
             source=source,
             metadata=metadata,

@@ -25,6 +25,7 @@ def recognize(
     method: Literal["default", "multilinear", "signatures", "perera"] | None = None,
     known_person: str | None = None,
     known_task: str | None = None,
+    word_mode: Literal["default", "cca", "printed"] | None = None,
     progress: Progress | None = None,
 ) -> Call[Recognition]:
     """Recognize person, task and words of a motion. `label` is null if it is unknown.
@@ -47,6 +48,7 @@ def recognize(
         as new, and its label in the answer is null.
     known_task: Recognize the person given the task. If the library does not know it, it counts
         as new, and its label in the answer is null.
+    word_mode: How words are predicted: as in a search by words. Default: default.
     progress: Called with the bytes that were sent and the bytes in total.
     """
     from kinedex.types.recognition import Recognition
@@ -66,6 +68,7 @@ def recognize(
             method=method,
             known_person=known_person,
             known_task=known_task,
+            word_mode=word_mode,
         ),
         fields=given(
             clip_id=clip_id,
@@ -77,6 +80,7 @@ def recognize(
             method=method,
             known_person=known_person,
             known_task=known_task,
+            word_mode=word_mode,
         ),
         files=given(file=file, skeleton=skeleton),
         progress=progress,

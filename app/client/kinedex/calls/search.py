@@ -129,7 +129,7 @@ def search_words(
     words: Sequence[str],
     *,
     fields: Sequence[str] | None = None,
-    mode: Literal["default", "cca"] | None = None,
+    mode: Literal["default", "cca", "printed"] | None = None,
     limit: int | None = None,
     filter: Filter | Mapping[str, Any] | None = None,
     cursor: str | None = None,
@@ -144,7 +144,9 @@ def search_words(
     words: Words, phrases or sentences. Inflected forms and words of the same meaning are
         understood. A word with a minus before it (-left) leaves out the clips that carry it.
     mode: How clips are ranked. default: by a kernel regression from motion features to words.
-        cca: by the angle in Takano's correlated space of motion symbols and words. Default:
+        cca: by the angle in Takano's correlated space of motion symbols and words, with a ridge
+        and with as many dimensions as predict held-out words best. printed: by the distance in
+        that space as Takano printed it, with the pseudo-inverse and 10 dimensions. Default:
         default.
     limit: Maximum number of items in one answer. Default: 10.
     """
@@ -166,7 +168,7 @@ def search_parts(
     file: FileInput | None = None,
     skeleton: FileInput | None = None,
     method: Method | None = None,
-    mode: Literal["default", "cca"] | None = None,
+    mode: Literal["default", "cca", "printed"] | None = None,
     limit: int | None = None,
     include_self: bool | None = None,
     filter: Filter | Mapping[str, Any] | None = None,

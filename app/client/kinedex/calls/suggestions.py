@@ -14,13 +14,16 @@ if TYPE_CHECKING:
 
 
 def suggest_words(
-    clip_id: str, *, limit: int | None = None, mode: Literal["default", "cca"] | None = None
+    clip_id: str,
+    *,
+    limit: int | None = None,
+    mode: Literal["default", "cca", "printed"] | None = None,
 ) -> Call[WordSuggestions]:
     """Words that the word model suggests for the clip and that the clip does not have yet.
 
     limit: Default: 10.
-    mode: As in a search by words: kernel regression (default) or correlated space (cca).
-        Default: default.
+    mode: As in a search by words: kernel regression (default), or the correlated space (cca;
+        printed: as in the paper). Default: default.
     """
     from kinedex.types.labels import WordSuggestions
 

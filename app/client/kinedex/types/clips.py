@@ -17,6 +17,7 @@ class Clip(Record):
     """A motion-capture clip with its labels.
 
     path: Path of the file, relative to its import; null for a file without a path.
+    captions: Sentences that describe the motion.
     metadata: Values of your own, by key.
     frame_rate: Frames per second, as used.
     declared_frame_rate: Frames per second, as the file says.
@@ -49,6 +50,7 @@ class Clip(Record):
     person: str | None
     task: str | None
     words: list[str]
+    captions: list[str]
     license: str | None
     source: str | None
     metadata: dict[str, bool | int | float | str]

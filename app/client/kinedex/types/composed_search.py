@@ -55,7 +55,10 @@ class ComposedHits(Page[ComposedHit]):
 
     method: The method of the examples; without one, the mode of words.
     unknown_words: Words that no clip carries.
-    expanded: For each unknown word, the words that were used instead.
+    expanded: For each word that no clip carries, the words that were used instead: words of the
+    library, or a detector of what the word names (`left foot moves`).
+    confidence: For each word of `expanded`, how sure it is that the replacement means the same:
+    1 for another form of the word. Scores are multiplied by it.
     """
 
     method: str
@@ -65,3 +68,4 @@ class ComposedHits(Page[ComposedHit]):
     next: str | None
     unknown_words: list[str]
     expanded: dict[str, list[str]]
+    confidence: dict[str, float]

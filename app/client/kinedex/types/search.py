@@ -45,7 +45,8 @@ class WordHit(Record):
     because no clip carries it, the most probable of them counts, reduced by the distance
     between the two meanings. Rounded to 4 decimals, because the calibration is not more exact.
     0 means very unlikely, not impossible.
-    distance: -ln(score) in mode default; 1 - cosine, 0 to 2, in mode cca.
+    distance: -ln(score) in mode default; 1 - cosine, 0 to 2, in mode cca; Euclidean in mode
+    printed.
     start: Start of the found part, seconds from the start of the clip. 0 with scope clips.
     end: End of the found part, seconds.
     """
@@ -63,7 +64,10 @@ class WordHits(Page[WordHit]):
     """A page of a ranking by words, the most probable first.
 
     unknown_words: Words that no clip carries.
-    expanded: For each unknown word, the words that were used instead.
+    expanded: For each word that no clip carries, the words that were used instead: words of the
+    library, or a detector of what the word names (`left foot moves`).
+    confidence: For each word of `expanded`, how sure it is that the replacement means the same:
+    1 for another form of the word. Scores are multiplied by it.
     """
 
     method: str
@@ -73,3 +77,4 @@ class WordHits(Page[WordHit]):
     next: str | None
     unknown_words: list[str]
     expanded: dict[str, list[str]]
+    confidence: dict[str, float]

@@ -89,6 +89,13 @@ IRREGULAR: dict[str, str] = {
 }
 """Base form by inflected form."""
 
+_NOT_AGENTS = """
+shower slipper locker roller lighter stroller drawer counter corner cover dresser trailer
+poster letter butter cracker jumper sweater trainer loafer
+"""
+NOT_AGENTS = frozenset(_NOT_AGENTS.split())
+"""Words in -er that do not name somebody who does what the word without -er says."""
+
 _VOWELS = frozenset("aeiouy")
 _MIN_LETTERS = 2
 """Smallest number of letters of a base form."""
@@ -135,10 +142,11 @@ def _by_rule(word: str) -> Iterator[str]:
         yield word[:-1]
     if word.endswith("ied"):
         yield word[:-3] + "y"
+    is_agent = word.removesuffix("s") not in NOT_AGENTS
     for ending in ("ing", "ed", "er"):
-        if word.endswith(ending):
+        if word.endswith(ending) and (ending != "er" or is_agent):
             yield from _before(word.removesuffix(ending))
-    if word.endswith("ers"):
+    if word.endswith("ers") and is_agent:
         yield from _before(word[:-3])
     if word.endswith("ly"):
         yield word[:-2]

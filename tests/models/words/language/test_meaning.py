@@ -59,6 +59,11 @@ def test_words_that_a_library_no_longer_has_are_dropped() -> None:
     assert Meanings.from_meta({}) == Meanings()
 
 
+@pytest.mark.parametrize("word", ["falling", "take", "shower", "box_office", "shiver"])
+def test_a_word_that_the_lexicon_keeps_apart_stays_unknown(word: str) -> None:
+    assert neighbors(word, LIBRARY, {"fall": {"run": 0.65}, "shower": {"kick": 0.1}}) == ()
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(not is_installed(), reason="the extra `words` is not installed")
 def test_wordnet_has_more_words() -> None:
@@ -73,3 +78,7 @@ def test_wordnet_has_more_words() -> None:
     }.items():
         found = [near.word for near in neighbors(word, LIBRARY, related)]
         assert ours in found, (word, found)
+    others = ("left", "arm", "guide", "strike", "hand", "turn")
+    senseless = Meanings().of(others, look_up=True).related
+    for word in ("make", "floor", "shower", "take", "weapon", "leave", "music", "give", "house"):
+        assert neighbors(word, others, senseless) == (), word

@@ -29,6 +29,9 @@ def _is_word(word: str) -> bool:
         (["walk", "-turning"], ("walk",), ("turning",)),
         (["walking without turning"], ("walking",), ("turning",)),
         (["someone flies up"], ("flies", "up"), ()),
+        (["she takes a step"], ("step",), ()),
+        (["somebody is making turns"], ("turns",), ()),
+        (["takes"], ("takes",), ()),
         (["the"], ("the",), ()),
         (["the man"], (), ()),
         (["walk walk", "walk"], ("walk",), ()),
@@ -40,6 +43,16 @@ def test_queries_are_read_into_words(
     texts: list[str], included: tuple[str, ...], excluded: tuple[str, ...]
 ) -> None:
     assert read_query(texts, _is_word) == QueryWords(included, excluded)
+
+
+def test_a_noun_after_an_article_is_a_thing() -> None:
+    for text, things in {
+        "lifts a box": {"box"},
+        "boxes with a kick": set(),
+        "the man rows": set(),
+        "two rows of his boots": {"boots"},
+    }.items():
+        assert read_query([text], _is_word).things == things
 
 
 @given(st.lists(st.text(max_size=40), max_size=4))
