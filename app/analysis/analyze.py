@@ -53,7 +53,7 @@ from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray
 from app.numerics.tensors.rank1 import Rank1
 
-ANALYSIS_VERSION = 7
+ANALYSIS_VERSION = 8
 """Raise this number if the content of an array changes. Older clips are then analyzed again."""
 
 

@@ -40,7 +40,9 @@ class JobExecutors:
     def __init__(self, lib: Library) -> None:
         self.lib = lib
         self.slots = lib.settings.analysis_processes or os.cpu_count() or 1
-        self._analyses = AnalysisPool(ingest_limits(lib.settings), size=self.slots)
+        self._analyses = AnalysisPool(
+            ingest_limits(lib.settings), size=self.slots, cache_dir=lib.settings.cache_dir
+        )
         self._threads = ThreadPoolExecutor(1, thread_name_prefix="import")
 
     def begin(self, claimed: ClaimedJob, clip: ClipRecord | None) -> RunningJob:

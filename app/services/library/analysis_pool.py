@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import concurrent.futures
 import logging
+import os
 import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -83,10 +84,15 @@ class Limits:
 
 
 class AnalysisPool:
-    """Child processes that analyze files, `size` at a time; they start with the first request."""
+    """Child processes that analyze files, `size` at a time; they start with the first request.
 
-    def __init__(self, limits: Limits, *, size: int = 1) -> None:
+    cache_dir: a folder for the compiled parts of librosa, so that only the first recording waits
+    for them; None for the folder that numba chooses.
+    """
+
+    def __init__(self, limits: Limits, *, size: int = 1, cache_dir: Path | None = None) -> None:
         self.limits = limits
+        self._cache_dir = cache_dir
         self._size = size
         self._lock = threading.Lock()
         self._pool = self._new_pool()
@@ -176,7 +182,8 @@ class AnalysisPool:
         self._pool.close()
 
     def _new_pool(self) -> ChildPool:
-        return ChildPool(self._size, _prepare, self.limits.memory_mb, level_of_process())
+        folder = None if self._cache_dir is None else str(self._cache_dir.absolute() / "numba")
+        return ChildPool(self._size, _prepare, self.limits.memory_mb, level_of_process(), folder)
 
 
 def analyze_file(request: AnalysisRequest, limits: Limits) -> Analysis:
@@ -272,7 +279,9 @@ def _check_size(recording: Recording, limits: Limits) -> None:
             raise TooLarge(f"The motion has more than {limit} {noun}.", places=[place])
 
 
-def _prepare(memory_mb: int, level: str) -> None:
+def _prepare(memory_mb: int, level: str, numba_folder: str | None) -> None:
     """Set up a child process before its first task."""
     log_like_parent(level)
     limit_memory(memory_mb)
+    if numba_folder is not None:
+        os.environ.setdefault("NUMBA_CACHE_DIR", numba_folder)

@@ -78,7 +78,7 @@ class Library:
             models=FittedModels(),
             word_scores=ModelRows(),
             symbol_points=ModelRows(),
-            pool=AnalysisPool(query_limits(settings)),
+            pool=AnalysisPool(query_limits(settings), cache_dir=settings.cache_dir),
             windows={
                 scale.name: VectorIndex(layout=parts_layout(scale.vectors, scale.spans, WIDTH))
                 for scale in WINDOW_SCALES
