@@ -20,9 +20,9 @@ import pytest
 
 from app.analysis.energy.energy import energies
 from app.analysis.rhythm.audio_beats import find_audio_beats
-from app.analysis.rhythm.audio_offset import estimate_offset
-from app.analysis.rhythm.beats import find_beats, find_stops
+from app.analysis.rhythm.beats import find_beats
 from app.analysis.rhythm.onsets import find_onsets
+from app.analysis.rhythm.rhythm import find_rhythm
 from app.demo import DemoClip
 from app.demo.dances import Sound, dance
 from app.demo.dances.music import STYLES
@@ -30,7 +30,7 @@ from app.demo.dances.sounds import SAMPLE_RATE
 from app.formats.audio.reader import read_audio
 from app.formats.read import read_recording
 from app.motion.canonical.canonical import canonicalize
-from app.motion.frame.body_frame import body_track
+from app.motion.frame.body_frame import BodyTrack, body_track
 from tests.bench.page import Section
 from tests.held_out_music import HELD_OUT_STYLES
 from tests.recordings import CLICKS, WITHOUT_BEAT, f_score, piece, without_beat
@@ -140,7 +140,11 @@ def _hears(samples: np.ndarray) -> bool:
 
 
 def _energy(clip: DemoClip) -> np.ndarray:
-    return energies(body_track(canonicalize(read_recording(clip.content)))).global_energy
+    return energies(_track(clip)).global_energy
+
+
+def _track(clip: DemoClip) -> BodyTrack:
+    return body_track(canonicalize(read_recording(clip.content)))
 
 
 def test_tempo_from_motion() -> None:
@@ -173,8 +177,7 @@ def test_offsets_of_recordings() -> None:
             clip = dance(OFFSETS + i, bpm=bpm, noise_mm=noise, drift=0.03 * (i % 2), sound=sound)
             heard = read_audio(clip.audio)
             onsets = find_onsets(heard.samples, heard.rate)
-            stops = find_stops(_energy(clip), 30.0)
-            found = estimate_offset(stops, find_audio_beats(onsets).times, onsets)
+            found = find_rhythm(_track(clip), onsets=onsets).offset
             if found is None or clip.audio_offset is None:
                 unknown += 1
                 continue
