@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from pathlib import Path
+from tempfile import gettempdir
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -12,6 +14,9 @@ from tests.live import Live, serve, serve_demo
 
 # WordNet takes seconds to load, in every fit of every library; its own test sets this to true.
 os.environ.setdefault("KINEDEX_WORDNET", "false")
+
+# Compiling librosa takes 20 s and more; all libraries of the tests share the result.
+os.environ.setdefault("NUMBA_CACHE_DIR", str(Path(gettempdir()) / "kinedex-tests-numba"))
 
 # On a busy machine every example takes long, and that says nothing about the code.
 settings.register_profile("busy", deadline=None, suppress_health_check=[HealthCheck.too_slow])

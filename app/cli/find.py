@@ -58,6 +58,22 @@ def search(
             help="Method fused: any (also faster, slower, cut or repeated) or same (as it is)."
         ),
     ] = "any",
+    max_distance: Annotated[
+        float | None,
+        typer.Option(min=0.0, help="Only hits at most this far, in the unit of the method."),
+    ] = None,
+    q: Annotated[
+        int,
+        typer.Option("--q", min=1, max=2, help="Methods msv-*: norm of distances, 1 or 2."),
+    ] = 2,
+    eta: Annotated[
+        float,
+        typer.Option(min=0.0, help="Methods msv-*: threshold in body lengths; 0 for none."),
+    ] = 0.0,
+    normalized: Annotated[
+        bool,
+        typer.Option("--normalized", help="Method msv-xcorr: without the ratio of the lengths."),
+    ] = False,
     mode: Annotated[
         str, typer.Option(help="Mode of a search by words: default, cca or printed.")
     ] = "default",
@@ -88,6 +104,10 @@ def search(
         "scope": scope,
         "segment": segment,
         "tempo": tempo,
+        "max_distance": max_distance,
+        "q": q,
+        "eta": eta,
+        "normalized": normalized,
         "limit": limit,
         "filter": fields,
         "include_self": include_self,

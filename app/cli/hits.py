@@ -37,11 +37,12 @@ def print_hits(hits: Any, times: Sequence[str], *, as_json: bool, as_csv: bool) 
         others = {"start", "end", "time"} - set(times)
         print_csv([name for name in COLUMNS if name not in others], hits.to_json()["items"])
     else:
-        columns = ("rank", "score", *times, "name", "person", "task", "id")
+        columns = ("rank", "score", "distance", *times, "name", "person", "task", "id")
         rows = [
             (
                 hit.rank,
                 hit.score,
+                hit.distance,
                 *(getattr(hit, name) for name in times),
                 clip_title(hit.clip.name, hit.clip.path),
                 hit.clip.person,

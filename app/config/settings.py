@@ -270,6 +270,11 @@ class Settings(BaseSettings):
         return self.data_dir / "files"
 
     @property
+    def cache_dir(self) -> Path:
+        """Directory of what can be made again, such as the compiled parts of librosa."""
+        return self.data_dir / "cache"
+
+    @property
     def listens_on_loopback(self) -> bool:
         """Whether only this machine can reach the service."""
         return self.host in LOOPBACK_HOSTS

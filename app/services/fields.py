@@ -233,6 +233,13 @@ def stem(name: str) -> str:
     return name.rpartition(".")[0] or name
 
 
+def max_distance(value: float | None) -> float | None:
+    """The largest distance of a hit; None for any. Raises BadField."""
+    if value is not None and not (math.isfinite(value) and value >= 0):
+        raise bad_field("max_distance", "must be zero or more")
+    return value
+
+
 def limit(value: int) -> int:
     """The number of hits on one page, from 1 to MAX_LIMIT."""
     if not 1 <= value <= MAX_LIMIT:

@@ -17,7 +17,7 @@ from app.services.clips import ingest
 from app.services.evaluations import evaluations
 from app.services.imports import imports
 from app.services.library.analysis_pool import AnalysisPool
-from app.services.library.library import Library, cache_folder, ingest_limits
+from app.services.library.library import Library, ingest_limits
 from app.services.training.fit_process import fit_in_child
 from app.store.clips.record import ClipRecord
 from app.store.jobs import outcomes
@@ -41,7 +41,7 @@ class JobExecutors:
         self.lib = lib
         self.slots = lib.settings.analysis_processes or os.cpu_count() or 1
         self._analyses = AnalysisPool(
-            ingest_limits(lib.settings), size=self.slots, cache=cache_folder(lib.settings)
+            ingest_limits(lib.settings), size=self.slots, cache=lib.settings.cache_dir
         )
         self._threads = ThreadPoolExecutor(1, thread_name_prefix="import")
 

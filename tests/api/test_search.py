@@ -38,6 +38,76 @@ def test_hits_have_their_shape(demo: httpx2.Client, walk: dict[str, Any], method
     assert distances == sorted(distances)
 
 
+@pytest.mark.parametrize("method", METHODS)
+def test_hits_within_a_distance(demo: httpx2.Client, walk: dict[str, Any], method: str) -> None:
+    query = {"clip_id": walk["id"], "method": method}
+    every = _search(demo, **query, limit=1000)["items"]
+    limit = every[3]["distance"]
+    near = [hit for hit in every if hit["distance"] <= limit]
+    found = _search(demo, **query, limit=1000, max_distance=limit)
+    assert found["items"] == near
+    assert found["next"] is None
+    page = _search(demo, **query, limit=2, max_distance=limit)
+    assert page["items"] == near[:2]
+    rest = _search(demo, **query, limit=1000, max_distance=limit, cursor=page["next"])
+    assert rest["items"] == near[2:]
+    assert _search(demo, **query, max_distance=0.0)["items"] == []
+
+
+@pytest.mark.parametrize("scope", ["windows", "segments"])
+def test_parts_within_a_distance(demo: httpx2.Client, walk: dict[str, Any], scope: str) -> None:
+    query = {"clip_id": walk["id"], "start": 0.0, "end": 1.0, "scope": scope}
+    every = _search(demo, **query, limit=10)["items"]
+    found = _search(demo, **query, limit=10, max_distance=every[2]["distance"])
+    assert found["items"] == [h for h in every if h["distance"] <= every[2]["distance"]]
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{"q": 1}, {"eta": 0.4}, {"q": 1, "eta": 0.4}, {"method": "msv-xcorr", "normalized": True}],
+    ids=str,
+)
+def test_motion_volumes_of_other_settings(
+    demo: httpx2.Client, walk: dict[str, Any], options: dict[str, Any]
+) -> None:
+    query = {"clip_id": walk["id"], "limit": 1000, "include_self": True, "method": "msv-dtw"}
+    plain = _search(demo, **{**query, "method": options.get("method", "msv-dtw")})["items"]
+    found = _search(demo, **{**query, **options})["items"]
+    assert found[0]["clip"]["id"] == walk["id"]
+    assert found[0]["distance"] < 1e-5
+    assert {hit["clip"]["id"] for hit in found} == {hit["clip"]["id"] for hit in plain}
+    assert [hit["distance"] for hit in found] != [hit["distance"] for hit in plain]
+    again = _search(demo, **{**query, **options})["items"]
+    assert again == found  # the second time from memory
+
+
+def test_an_upload_by_volumes_of_other_settings(demo: httpx2.Client, take: DemoClip) -> None:
+    sent = {"method": "msv-dtw", "q": "1", "start": "0.2", "max_distance": "1e6"}
+    file = {"file": ("a.bvh", take.content)}
+    answer = demo.post("/v1/search/motion", data=sent, files=file)
+    assert answer.status_code == 200, answer.text
+    assert answer.json()["items"]
+
+
+@pytest.mark.parametrize(
+    ("options", "field"),
+    [
+        ({"q": 1}, "q"),
+        ({"eta": 0.3, "method": "dtw"}, "eta"),
+        ({"normalized": True, "method": "msv-dtw"}, "normalized"),
+        ({"q": 3, "method": "msv-dtw"}, "q"),
+        ({"eta": -1, "method": "msv-dtw"}, "eta"),
+        ({"max_distance": -1}, "max_distance"),
+    ],
+)
+def test_options_of_volumes_that_do_not_fit_are_refused(
+    demo: httpx2.Client, walk: dict[str, Any], options: dict[str, Any], field: str
+) -> None:
+    answer = demo.post("/v1/search/motion", json={"clip_id": walk["id"], **options})
+    assert answer.status_code == 422, answer.text
+    assert answer.json()["errors"][0]["location"].endswith(field)
+
+
 def test_the_nearest_clip_has_the_same_task(demo: httpx2.Client, walk: dict[str, Any]) -> None:
     reply = _search(demo, clip_id=walk["id"], limit=1)
     assert reply["items"][0]["clip"]["task"] == "walk"

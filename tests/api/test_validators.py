@@ -12,6 +12,7 @@ from app.demo import DemoClip, demo_clips
 from tests.live import Live, serve
 
 VIEWS = ["", "/motion", "/motion?fps=10", "/thumbnail.svg", "/animation.svg", "/descriptor"]
+VIEWS += ["/ssm.svg", "/msv.svg?slices=4"]
 VIEWS += ["/symbol/motion", "/export?format=bvh", "/file"]
 
 

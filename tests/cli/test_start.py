@@ -27,7 +27,8 @@ main()
 DATABASE = {"sqlalchemy", "alembic"}
 WEB = {"fastapi", "starlette"}
 PARTS = ("fft", "interpolate", "linalg", "ndimage", "optimize", "signal", "stats")
-SCIENCE = {f"scipy.{part}" for part in PARTS} | {"sklearn", "hmmlearn", "matplotlib", "librosa"}
+SLOW = {"sklearn", "hmmlearn", "matplotlib", "librosa", "numba"}
+SCIENCE = {f"scipy.{part}" for part in PARTS} | SLOW
 """`import scipy` alone is quick: it imports each part when that is first used."""
 CHOICES_NEED_NUMPY = {"search-pose", "export"}
 """Commands with an option whose choices are defined in a module that imports NumPy."""

@@ -13,6 +13,7 @@ import numpy as np
 
 from app.motion.frame.body_frame import BodyTrack
 from app.numerics.alignment.cross_correlation import (
+    max_contained_cosines,
     max_cross_correlations,
     max_cross_correlations_of_rows,
 )
@@ -57,14 +58,25 @@ def decompose(track: BodyTrack, *, q: int = 2, threshold: float = 0.0) -> Rank1:
 
 
 def cross_correlations(
-    rho: FloatArray, epsilon: FloatArray, rhos: FloatArray, epsilons: Sequence[FloatArray]
+    rho: FloatArray,
+    epsilon: FloatArray,
+    rhos: FloatArray,
+    epsilons: Sequence[FloatArray],
+    *,
+    normalized: bool = False,
 ) -> FloatArray:
     """(c,) D_xcorr of equation 6, 0..3, larger for more similar motions; rho counts twice.
 
     rho: (13,) and epsilon: (n,) of one motion. rhos: (c, 13) and epsilons: c of (m,) of others.
+
+    As printed, D_xcorr depends on the ratio of the lengths: epsilon has length 1 and hardly
+    changes, so it is about 1 / sqrt(T) everywhere, and two of T and U > T frames correlate by about
+    sqrt(T / U). normalized: instead of this correlation, the largest cosine of the shorter epsilon
+    and an equally long part of the longer one, 0..1.
     """
     spatial = max_cross_correlations_of_rows(rho, rhos)
-    return 2.0 * spatial + max_cross_correlations(epsilon, epsilons)
+    correlate = max_contained_cosines if normalized else max_cross_correlations
+    return 2.0 * spatial + correlate(epsilon, epsilons)
 
 
 def warping_distances(

@@ -22,6 +22,7 @@ from app.api.schemas.query_source import ClipId, QueryFields, QueryForm
 from app.search.example.methods import Method
 from app.services.find.queries import MotionQuery, WordQuery
 from app.services.find.query_source import QuerySource
+from app.services.volume_options import MAX_CLIPS, MAX_ETA, VolumeOptions
 
 
 class _MotionOptions(QueryFields):
@@ -43,6 +44,40 @@ class _MotionOptions(QueryFields):
         "comes first. same: tempo is a part of the motion, and whole clips are compared as they "
         "are.",
     )
+    max_distance: float | None = Field(
+        None,
+        ge=0,
+        allow_inf_nan=False,
+        description="Only hits whose `distance` is at most this; `limit` and `next` still make "
+        "pages. Units of distances: vector: of motion vectors, Euclidean. dtw: body lengths, the "
+        "mean over aligned frames. fused: of both and of the graph of neighbors; behind the 300 "
+        "nearest it goes on from the last of them. msv-dtw: D_dtw (Sun 2011, equation 7). "
+        "msv-xcorr: 3 - D_xcorr (equation 6). metric-*: Euclidean, in learned coordinates.",
+    )
+    q: int = Field(
+        2,
+        ge=1,
+        le=2,
+        description="For methods msv-dtw and msv-xcorr with scope clips: the norm of the distances "
+        "between joints, 1 or 2 (Sun 2011, equation 2). With 1, the volumes of all clips that pass "
+        f"the filter are computed for the search, 20 ms each; at most {MAX_CLIPS} clips.",
+    )
+    eta: float = Field(
+        0.0,
+        ge=0,
+        le=MAX_ETA,
+        allow_inf_nan=False,
+        description="For the same methods: above 0, a cell of a self-similarity matrix is 1 where "
+        "two joints are at most this many body lengths apart, else 0. 0, the paper's choice, keeps "
+        "the distances. It costs as much as q = 1.",
+    )
+    normalized: bool = Field(
+        False,
+        description="For method msv-xcorr. As printed, D_xcorr of two motions falls with the ratio "
+        "of their lengths: of T and U > T frames, the correlation in time is about sqrt(T / U) at "
+        "most. true: the shorter motion is compared with parts of the longer one as long as it, so "
+        "that a long motion can be like a short one.",
+    )
     include_self: bool = Field(
         False,
         description="Whether the query clip may be a hit. A file that is stored already counts as "
@@ -62,6 +97,8 @@ class _MotionOptions(QueryFields):
             scope=self.scope,
             segment=segment,
             tempo=self.tempo,
+            max_distance=self.max_distance,
+            volumes=VolumeOptions(self.q, self.eta, self.normalized),
             include_self=self.include_self,
             cursor=self.cursor,
         )
@@ -156,7 +193,10 @@ class Hit(Outgoing):
 
     rank: int = Field(ge=1)
     score: float = Field(ge=0, le=1, description="Higher is closer.")
-    distance: float
+    distance: float = Field(
+        description="Its unit depends on the search; `max_distance` of a search by example names "
+        "those of the methods."
+    )
     start: HitSeconds = Field(
         description="Start of the found part, seconds from the start of the clip. 0 with scope "
         "clips."

@@ -11,6 +11,7 @@ from pydantic import Field
 from app.api.schemas.base import Fps, Incoming, Outgoing
 from app.numerics.tensors.rank1 import MAX_ITERATIONS
 from app.services.views.views import DescriptorView
+from app.services.volume_options import MAX_ETA, MAX_SLICES, VolumeOptions
 
 Point = Annotated[list[float], Field(min_length=3, max_length=3)]
 
@@ -23,6 +24,43 @@ class MotionQueryParameters(Incoming):
     )
     joints: Literal["all", "roles"] = Field(
         "all", description="All joints, or the 13 joints of figure 2 in Sun 2011, in its order."
+    )
+
+
+class VolumeParameters(Incoming):
+    """How the distances between joints are measured (Sun 2011, equations 1 and 2)."""
+
+    q: int = Field(2, ge=1, le=2, description="The norm of the distances, 1 or 2.")
+    eta: float = Field(
+        0.0,
+        ge=0,
+        le=MAX_ETA,
+        allow_inf_nan=False,
+        description="Above 0: a cell is dark where two joints are at most this many body lengths "
+        "apart. 0: the darker, the farther apart.",
+    )
+
+    def options(self) -> VolumeOptions:
+        """The options of the services."""
+        return VolumeOptions(self.q, self.eta)
+
+
+class MatrixParameters(VolumeParameters):
+    """One self-similarity matrix."""
+
+    time: float | None = Field(
+        None,
+        ge=0,
+        allow_inf_nan=False,
+        description="Seconds: the moment of the matrix. Default: the middle of the active part.",
+    )
+
+
+class SlicesParameters(VolumeParameters):
+    """Some slices of a motion volume."""
+
+    slices: int = Field(
+        10, ge=2, le=MAX_SLICES, description="Number of slices, evenly over the active part."
     )
 
 

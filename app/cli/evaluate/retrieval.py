@@ -128,6 +128,7 @@ def _print(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> None:
                 f" {judged.figures.method}, % (figure 8):\n"
             )
             print_confusion(found.classes, judged.confusion, f"confusion_{judged.figures.method}")
+            typer.echo(f"Overall mean (of the diagonal): {100 * judged.overall_confusion:.1f} %")
     print_text("\n" + "\n".join(_remarks(found, volumes)))
 
 
@@ -145,13 +146,14 @@ def _print_groups(found: RetrievalEvaluation) -> None:
 
 def _remarks(found: RetrievalEvaluation, volumes: VolumeEvaluation) -> list[str]:
     compression = volumes.compression
+    settings = f"q = {volumes.q}, eta = {volumes.threshold:g}"
     remarks = [
         f"A task with fewer than {found.k} other clips is judged by as many nearest clips.",
-        f"Rank-1 factors (q = {volumes.q}) of {len(volumes.iterations)} clips of these tasks:"
+        f"Rank-1 factors ({settings}) of {len(volumes.iterations)} clips of these tasks:"
         f" {volumes.converged} converged, in {np.median(volumes.iterations):.0f} iterations"
         f" (median; {max(volumes.iterations)} at most).",
         f"Compression ratio (section 5.3): {compression.formula:.4f} by the formula,"
-        f" {compression.measured:.4f} as stored, of {compression.clips} clips"
+        f" {compression.measured:.4f} as stored (q = 2, eta = 0), of {compression.clips} clips"
         f" with {compression.frames} frames.",
     ]
     if found.alone:

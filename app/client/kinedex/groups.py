@@ -47,6 +47,8 @@ class Clips(Group[SenderType]):
     motion_array = CallMethod(calls_clip_views.get_motion_array)
     descriptor = CallMethod(calls_clip_views.get_descriptor)
     thumbnail = CallMethod(calls_clip_views.get_thumbnail)
+    self_similarity = CallMethod(calls_clip_views.get_self_similarity)
+    motion_volume = CallMethod(calls_clip_views.get_motion_volume)
     alignment = CallMethod(calls_alignment.get_alignment)
     keyposes = CallMethod(calls_keyposes.get_keyposes)
     name_keyposes = CallMethod(calls_keyposes.name_keyposes)

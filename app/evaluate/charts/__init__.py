@@ -6,6 +6,7 @@ Pictures need matplotlib, the extra `plots`; no other part of Kinedex needs it.
 from app.evaluate.charts.confusion import confusion_picture, confusions_picture
 from app.evaluate.charts.curves import Curve, Panel, curves_picture
 from app.evaluate.charts.drawing import Format, format_of, need_plots, shown
+from app.evaluate.charts.matrices import Slices, matrices_picture, volumes_picture
 from app.evaluate.charts.scatter import Cloud, scatter_picture
 
 __all__ = [
@@ -13,11 +14,14 @@ __all__ = [
     "Curve",
     "Format",
     "Panel",
+    "Slices",
     "confusion_picture",
     "confusions_picture",
     "curves_picture",
     "format_of",
+    "matrices_picture",
     "need_plots",
     "scatter_picture",
     "shown",
+    "volumes_picture",
 ]

@@ -50,8 +50,12 @@ def confusions_picture(
     *,
     rows: str = "true class",
     columns: str = "taken for",
+    sizes: Sequence[int] = (),
 ) -> bytes:
-    """Draw matrices of the same classes side by side, as in figure 8."""
+    """Draw matrices of the same classes side by side, as in figure 8.
+
+    sizes: the number of clips of each class, for the names of the rows.
+    """
     count = len(classes)
     if not count or not by_title or {m.shape for m in by_title.values()} != {(count, count)}:
         raise ValueError("a confusion matrix has one row and one column for each class")
@@ -64,7 +68,7 @@ def confusions_picture(
         for column, (title, shares) in enumerate(by_title.items(), 1):
             axes = figure.add_subplot(1, len(by_title), column)
             axes.set(title=title, xlabel=columns, ylabel=rows if column == 1 else "")
-            mesh = _fill(axes, shares, classes, letters, with_rows=column == 1)
+            mesh = _fill(axes, shares, classes, letters, sizes, with_rows=column == 1)
         bar = figure.colorbar(mesh, ax=axes, shrink=0.6, aspect=25, pad=0.02, label="share")
         bar.outline.set_visible(False)
 
@@ -72,17 +76,24 @@ def confusions_picture(
 
 
 def _fill(
-    axes: Axes, shares: FloatArray, classes: Sequence[str], letters: float, *, with_rows: bool
+    axes: Axes,
+    shares: FloatArray,
+    classes: Sequence[str],
+    letters: float,
+    sizes: Sequence[int],
+    *,
+    with_rows: bool,
 ) -> QuadMesh:
     count = len(classes)
     names = [shown(name) for name in classes]
+    counted = [f"{name} ({size})" for name, size in zip(names, sizes, strict=False)]
     # separate squares stay sharp in an SVG, with white edges between them
     mesh = axes.pcolormesh(
         shares, cmap="Blues", vmin=0.0, vmax=1.0, edgecolors="white", linewidth=1.0
     )
     middles = np.arange(count) + 0.5
     axes.set_xticks(middles, names, rotation=60, ha="right", rotation_mode="anchor")
-    axes.set_yticks(middles, names if with_rows else [""] * count)
+    axes.set_yticks(middles, (counted or names) if with_rows else [""] * count)
     axes.set_aspect("equal")
     axes.invert_yaxis()
     axes.grid(visible=False)

@@ -36,7 +36,9 @@ def retrieval_document(found: RetrievalEvaluation, volumes: VolumeEvaluation) ->
         "confusion": {
             "classes": found.classes,
             "k": found.k,
+            "sizes": found.sizes,
             "methods": {one.figures.method: one.confusion.tolist() for one in found.methods},
+            "overall": {one.figures.method: one.overall_confusion for one in found.methods},
         },
         "left_out": {"unlabeled": found.unlabeled, "alone": found.alone},
         "volumes": {

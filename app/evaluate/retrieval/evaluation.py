@@ -11,7 +11,7 @@ import numpy as np
 
 from app.evaluate.grouping import Grouping, grouped
 from app.evaluate.retrieval.labeled import LabeledClips, read_labeled
-from app.evaluate.retrieval.rankings import Ranker, Volumes, by_method
+from app.evaluate.retrieval.rankings import Ranker, Volumes, by_method, by_stored_factors
 from app.models.held_out.class_rankings import JudgedRanking, confusion_matrix, true_positive_rates
 from app.numerics.arrays import FloatArray
 from app.search.example.methods import Method
@@ -68,6 +68,11 @@ class JudgedMethod:
         """Table 1's last column: the mean over the classes."""
         return float(self.rates.mean())
 
+    @property
+    def overall_confusion(self) -> float:
+        """The overall mean retrieval rate of figure 8: the mean of the confusion's diagonal."""
+        return float(np.diag(self.confusion).mean())
+
 
 @dataclass(frozen=True, slots=True)
 class RetrievalEvaluation:
@@ -76,7 +81,8 @@ class RetrievalEvaluation:
     methods: results by method; chosen: the classes hidden in the mixture of all `mixture`
     labeled clips; classes: (C,) of the confusion matrix; k: number of nearest clips in both
     experiments; unlabeled: number of clips without a task; alone: number of clips whose task is
-    in no other recording (they are in the mixture, but are not queries).
+    in no other recording (they are in the mixture, but are not queries); sizes: (C,) the number
+    of clips of each of `classes`.
     """
 
     methods: tuple[JudgedMethod, ...]
@@ -86,6 +92,7 @@ class RetrievalEvaluation:
     mixture: int
     unlabeled: int
     alone: int
+    sizes: tuple[int, ...] = ()
 
 
 def judge_retrieval(
@@ -103,9 +110,10 @@ def judge_retrieval(
     """Judge each method with the clips that pass the filter as queries for each other.
 
     Sun's two methods are also judged with q = 1, and with a threshold eta > 0 (body lengths) with
-    both q again. classes: those of table 1, None for the largest four. by: figures for each group
-    of queries too, see `Grouping`. Other files of the query's recording, and clips without a task,
-    are ignored. Raises NotEnoughLabels, and BadField for a class that cannot be judged or a wrong
+    both q again; beside them stand two rankings by the stored factors (`by_stored_factors`).
+    classes: those of table 1, None for the largest four. by: figures for each group of queries too,
+    see `Grouping`. Other files of the query's recording, and clips without a task, are ignored.
+    Raises NotEnoughLabels, and BadField for a class that cannot be judged or a wrong
     number or grouping.
     """
     _check(k, threshold, max_queries)
@@ -118,8 +126,9 @@ def judge_retrieval(
     groups = None if grouping is None else grouping.groups(queries)
     suns = [method for method in methods if method in SUN_METHODS]
     settings = _settings(threshold) if suns else []
+    beside = by_stored_factors(lib, labeled.clips) if suns else {}
     step = _stepper(
-        len(queries) * (len(methods) + len(suns) * len(settings))
+        len(queries) * (len(methods) + len(suns) * len(settings) + len(beside))
         + len(labeled.clips) * len(settings),
         progress,
     )
@@ -135,6 +144,7 @@ def judge_retrieval(
         for method in suns:
             name = f"{method.value} q={q}" + (f" eta={eta:g}" if eta else "")
             found[name] = list(judge(volumes.by(method)))
+    found |= {name: list(judge(ranker)) for name, ranker in beside.items()}
     return _evaluation(labeled, chosen, k, found, groups)
 
 
@@ -188,6 +198,7 @@ def _evaluation(
         mixture=len(labeled.clips),
         unlabeled=labeled.unlabeled,
         alone=len(labeled.clips) - len(labeled.in_a_class),
+        sizes=tuple(np.bincount(list(labeled.code.values()), minlength=count)[:count].tolist()),
     )
 
 

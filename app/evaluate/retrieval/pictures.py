@@ -1,4 +1,5 @@
-"""The figures of Sun 2011 for a library: confusion (8), convergence (7), vectors (6)."""
+"""The figures of Sun 2011 for a library: matrices (3), volumes (5), vectors (6), convergence (7),
+confusion (8)."""
 
 from __future__ import annotations
 
@@ -7,7 +8,16 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from app.evaluate.charts import Curve, Format, Panel, confusions_picture, curves_picture
+from app.evaluate.charts import (
+    Curve,
+    Format,
+    Panel,
+    Slices,
+    confusions_picture,
+    curves_picture,
+    matrices_picture,
+    volumes_picture,
+)
 from app.evaluate.retrieval.evaluation import RetrievalEvaluation
 from app.evaluate.retrieval.volumes import VolumeEvaluation
 from app.motion.frame.body_frame import ANALYSIS_RATE
@@ -20,6 +30,8 @@ SIDE_BY_SIDE = (Method.MSV_XCORR, Method.MSV_DTW, Method.FUSED)
 """The two methods of figure 8, and the default method of searches."""
 ENOUGH_ITERATIONS = 5
 """Sufficient number of iterations according to the paper."""
+MOMENTS, SLICES = 5, 10
+"""Numbers of matrices that are drawn of a clip, one by one and as a volume."""
 MIN_DRAWN = 1e-16
 """Smaller changes of lambda are rounding errors."""
 
@@ -36,21 +48,28 @@ def shown_methods(evaluation: RetrievalEvaluation) -> tuple[str, ...]:
 def confusion_figure(evaluation: RetrievalEvaluation, names: Sequence[str], form: Format) -> bytes:
     """The confusion matrices of these methods side by side."""
     matrices = {
-        f"{judged.figures.method}, {evaluation.k} nearest": judged.confusion
+        f"{judged.figures.method}, {evaluation.k} nearest\n"
+        f"mean {100 * judged.overall_confusion:.1f} %": judged.confusion
         for judged in evaluation.methods
         if judged.figures.method in names
     }
-    return confusions_picture(matrices, evaluation.classes, form, columns="retrieved")
+    return confusions_picture(
+        matrices, evaluation.classes, form, columns="retrieved", sizes=evaluation.sizes
+    )
 
 
 def vectors_figure(volumes: VolumeEvaluation, form: Format) -> bytes:
     """Primary vectors above, secondary vectors below; a column for each class, a curve for each
-    clip."""
+    clip.
+
+    Secondary vectors have length 1, so the values of a clip of T frames are about 1 / sqrt(T). They
+    are drawn times sqrt(T), so that clips of any length can be compared.
+    """
     joints = [role.value.replace("_", " ") for role in SUN_ROLES]
     joint_indices = np.arange(float(len(joints)))
     all_factors = [one for some in volumes.factors.values() for one in some]
     rho_range = _range([one.primary for one in all_factors])
-    epsilon_range = _range([one.secondary for one in all_factors])
+    epsilon_range = _range([_unscaled(one.secondary) for one in all_factors])
     above = [
         Panel(
             [Curve(joint_indices, one.primary) for one in some],
@@ -63,15 +82,41 @@ def vectors_figure(volumes: VolumeEvaluation, form: Format) -> bytes:
     ]
     below = [
         Panel(
-            [Curve(np.arange(len(one.secondary)) / ANALYSIS_RATE, one.secondary) for one in some],
+            [
+                Curve(np.arange(len(one.secondary)) / ANALYSIS_RATE, _unscaled(one.secondary))
+                for one in some
+            ],
             x_label="seconds",
-            y_label="secondary vector ε" if first else "",
+            y_label="secondary vector ε · √T" if first else "",
             y_range=epsilon_range,
         )
         for first, (_, some) in _columns(volumes)
     ]
     title = f"Rank-1 factors of the motion sequence volumes, q = {volumes.q}{_eta(volumes)}"
     return curves_picture([*above, *below], form, title=title, columns=len(volumes.factors))
+
+
+def matrices_figure(volumes: VolumeEvaluation, form: Format) -> bytes:
+    """Self-similarity matrices of one clip of each class at a few moments (figure 3)."""
+    joints = [role.value.replace("_", " ") for role in SUN_ROLES]
+    title = f"Self-similarity matrices, q = {volumes.q}{_eta(volumes)}"
+    label = "distance of joints, body lengths" if not volumes.threshold else "nearer than η"
+    return matrices_picture(_slices(volumes, MOMENTS), joints, form, title=title, label=label)
+
+
+def volumes_figure(volumes: VolumeEvaluation, form: Format) -> bytes:
+    """The motion volume of one clip of each class (figure 5)."""
+    title = f"Motion sequence volumes, q = {volumes.q}{_eta(volumes)}"
+    return volumes_picture(_slices(volumes, SLICES), form, title=title)
+
+
+def _slices(volumes: VolumeEvaluation, count: int) -> dict[str, Slices]:
+    """Slices at `count` moments, evenly over each example."""
+    slices = {}
+    for name, matrices in volumes.examples.items():
+        frames = np.linspace(0, len(matrices) - 1, count).round().astype(np.int64)
+        slices[name] = Slices(matrices[frames], frames / ANALYSIS_RATE)
+    return slices
 
 
 def convergence_figure(volumes: VolumeEvaluation, form: Format) -> bytes:
@@ -113,6 +158,8 @@ def all_figures(
         )
         for judged in evaluation.methods
     }
+    figures[f"matrices.{form}"] = matrices_figure(volumes, form)
+    figures[f"volumes.{form}"] = volumes_figure(volumes, form)
     figures[f"vectors.{form}"] = vectors_figure(volumes, form)
     figures[f"convergence.{form}"] = convergence_figure(volumes, form)
     return figures
@@ -121,6 +168,10 @@ def all_figures(
 def _columns(volumes: VolumeEvaluation) -> list[tuple[bool, tuple[str, tuple[Rank1, ...]]]]:
     """For each class: whether it is the first column, and its name and factors."""
     return [(index == 0, item) for index, item in enumerate(volumes.factors.items())]
+
+
+def _unscaled(epsilon: FloatArray) -> FloatArray:
+    return np.asarray(epsilon * np.sqrt(len(epsilon)))
 
 
 def _range(vectors: Sequence[FloatArray]) -> tuple[float, float]:

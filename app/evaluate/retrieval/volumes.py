@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from app.analysis.descriptors.motion_volume import compression_ratio
+from app.analysis.descriptors.active_part import active_part
+from app.analysis.descriptors.motion_volume import compression_ratio, self_similarity
 from app.evaluate.retrieval.evaluation import HIDDEN_CLASSES
 from app.evaluate.retrieval.labeled import LabeledClips, read_labeled
 from app.evaluate.retrieval.rankings import Volumes
+from app.motion.frame.body_frame import smooth_track
+from app.numerics.arrays import FloatArray
 from app.numerics.tensors.rank1 import Rank1
 from app.search.example.distances import EPSILON, RHO
 from app.services.library.library import Library
+from app.services.library.stored_motion import load_motion
 from app.store.clips import arrays
 from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipRecord
@@ -43,13 +47,14 @@ class VolumeEvaluation:
     """Rank-1 factors of clips by class, and their compression ratio.
 
     q, threshold: of the self-similarity matrices; factors: of at most MAX_PER_CLASS clips of
-    each class.
+    each class; examples: (n, 13, 13) the matrices of one clip of each class, at ANALYSIS_RATE.
     """
 
     q: int
     threshold: float
     factors: dict[str, tuple[Rank1, ...]]
     compression: Compression
+    examples: dict[str, FloatArray] = field(default_factory=dict)
 
     @property
     def iterations(self) -> tuple[int, ...]:
@@ -87,7 +92,17 @@ def judge_volumes(
             for name, members in sampled.items()
         },
         compression=_compression(lib, labeled.clips),
+        examples={
+            name: _matrices(lib, members[0], q=q, threshold=threshold)
+            for name, members in sampled.items()
+        },
     )
+
+
+def _matrices(lib: Library, clip: ClipRecord, *, q: int, threshold: float) -> FloatArray:
+    """(n, 13, 13) self-similarity matrices of the active part of a clip."""
+    track = active_part(smooth_track(load_motion(lib, clip)))
+    return self_similarity(track.local, q=q, threshold=threshold)
 
 
 def _sample(labeled: LabeledClips, name: str, max_count: int) -> list[ClipRecord]:

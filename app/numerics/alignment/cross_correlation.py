@@ -57,6 +57,30 @@ def max_cross_correlations_of_rows(query: FloatArray, rows: FloatArray) -> Float
     return np.asarray((rows @ shifted).max(axis=1, initial=0.0))
 
 
+def max_contained_cosines(query: FloatArray, candidates: Sequence[FloatArray]) -> FloatArray:
+    """(candidates,) the largest cosine of the shorter sequence and a part of the longer one.
+
+    query: (n,) and each candidate (m,). The part is as long as the shorter sequence, so the
+    lengths do not matter: a part of a sequence has the cosine 1 with it. This is normalized
+    cross-correlation at all lags of full overlap. An empty sequence gives 0.
+    """
+    values = np.zeros(len(candidates))
+    for number, candidate in enumerate(candidates):
+        if number % 256 == 0:
+            check()
+        short, long = sorted((query, candidate), key=len)
+        if len(short):
+            values[number] = _contained_cosine(short.astype(np.float64), long.astype(np.float64))
+    return values
+
+
+def _contained_cosine(short: FloatArray, long: FloatArray) -> float:
+    products = scipy.signal.correlate(long, short, "valid")
+    squares = np.concatenate([[0.0], np.cumsum(np.square(long))])
+    powers = (squares[len(short) :] - squares[: -len(short)]) * float(np.square(short).sum())
+    return float((products / np.sqrt(np.maximum(powers, 1e-24))).max())
+
+
 def _batches(lengths: IntArray, n: int) -> Iterator[IntArray]:
     """Indices of candidates whose transforms are about equally long, without empty candidates.
 

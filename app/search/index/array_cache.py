@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from app.numerics.arrays import FloatArray
 from app.search.index import usable_arrays
@@ -33,6 +33,20 @@ class ArrayCache:
 
     def get_many(self, store: Store, clip_ids: Iterable[str], name: str) -> dict[str, FloatArray]:
         """One array of many clips, by clip id; clips without a usable array are left out."""
+
+        def load(missing: Sequence[str]) -> dict[str, FloatArray]:
+            with store.read() as tx:
+                return usable_arrays.get_many(tx, missing, name)
+
+        return self.get_made(clip_ids, name, load)
+
+    def get_made(
+        self,
+        clip_ids: Iterable[str],
+        name: str,
+        make: Callable[[Sequence[str]], dict[str, FloatArray]],
+    ) -> dict[str, FloatArray]:
+        """As `get_many`, of arrays that `make` returns for the clips that are not in memory."""
         cached: dict[str, FloatArray] = {}
         missing: list[str] = []
         with self._lock:
@@ -45,8 +59,7 @@ class ArrayCache:
                     self._cached.move_to_end((clip_id, name))
                     cached[clip_id] = array
         if missing:
-            with store.read() as tx:
-                loaded = usable_arrays.get_many(tx, missing, name)
+            loaded = make(missing)
             self._add(name, loaded, forgotten)
             cached |= loaded
         return cached

@@ -30,6 +30,7 @@ from app.services.find.queries import (
 )
 from app.services.find.query import describe
 from app.services.library.library import Library
+from app.services.volume_options import NORMALIZED_SCALE, STORED_VOLUMES
 from app.store.clips.filter import ClipFilter
 
 
@@ -46,6 +47,8 @@ def find_motion(lib: Library, query: MotionQuery) -> Hits:
         raise fields.bad_field("scope", f"must be one of {', '.join(SCOPES)}")
     if query.tempo not in TEMPOS:
         raise fields.bad_field("tempo", f"must be one of {', '.join(TEMPOS)}")
+    fields.max_distance(query.max_distance)
+    query.volumes.check(method, query.scope)
     version = lib.index.catch_up(lib.store)
     ranked_by = RANKED_BY_IN_SEGMENTS if query.scope == "segments" else method
     page = _search(query, method)(lib, query, method, clip_filter)
@@ -104,6 +107,8 @@ def _search(query: MotionQuery, method: Method) -> _Search:
 def _by_example(
     lib: Library, query: MotionQuery, method: Method, clip_filter: ClipFilter
 ) -> HitPage:
+    if query.volumes != STORED_VOLUMES:
+        return _by_volumes(lib, query, method, clip_filter)
     described = describe(lib, query.source, COMPARED)
     arrays = described.arrays
     # An upload has no id: the cursor identifies it by a hash of its descriptors.
@@ -112,7 +117,7 @@ def _by_example(
     question = cursors.digest(
         query.source.clip_id, content, method, clip_filter, query.include_self, paced is None
     )
-    paging = Paging.at(query.cursor, question, query.clip_fields)
+    paging = Paging.at(query.cursor, question, query.clip_fields, query.max_distance)
     if paced is not None:
         paced.catch_up(lib.store)
     found = rank_by_example(
@@ -128,6 +133,20 @@ def _by_example(
     return _page(lib, found, paging, query.limit, partial(score, scale=SCALES[method]))
 
 
+def _by_volumes(
+    lib: Library, query: MotionQuery, method: Method, clip_filter: ClipFilter
+) -> HitPage:
+    """By motion volumes that are compared in another way than the stored ones."""
+    # Imported here, so that other searches do not load the analysis.
+    from app.services.find.by_volumes import rank_by_volumes
+
+    found = rank_by_volumes(lib, query, method, clip_filter)
+    question = cursors.digest(found.digest, method, clip_filter, query.volumes)
+    paging = Paging.at(query.cursor, question, query.clip_fields, query.max_distance)
+    scale = NORMALIZED_SCALE if query.volumes.normalized else SCALES[method]
+    return _page(lib, found.ranking, paging, query.limit, partial(score, scale=scale))
+
+
 def _by_metric(
     lib: Library, query: MotionQuery, method: Method, clip_filter: ClipFilter
 ) -> HitPage:
@@ -137,7 +156,7 @@ def _by_metric(
     question = cursors.digest(
         query.source.clip_id, found.digest, method, clip_filter, query.include_self, found.model
     )
-    paging = Paging.at(query.cursor, question, query.clip_fields)
+    paging = Paging.at(query.cursor, question, query.clip_fields, query.max_distance)
     return _page(lib, found.ranking, paging, query.limit, found.to_score)
 
 

@@ -51,7 +51,7 @@ def find_in_segments(
         vector, queried = _stored_segment(lib, query.source, query.segment)
     excluded = None if query.include_self else queried
     question = cursors.digest("segments", queried, vector.tobytes().hex(), clip_filter, excluded)
-    paging = Paging.at(query.cursor, question, query.clip_fields)
+    paging = Paging.at(query.cursor, question, query.clip_fields, query.max_distance)
     candidates = _candidates(lib, vector, clip_filter, excluded)
     found, more = merge_overlapping(candidates, query.limit, paging.after)
     to_score = partial(score, scale=SCORE_SCALE)

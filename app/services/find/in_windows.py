@@ -47,7 +47,7 @@ def find_in_windows(
     question = cursors.digest(
         "windows", query.source.clip_id, content, method, clip_filter, excluded
     )
-    paging = Paging.at(query.cursor, question, query.clip_fields)
+    paging = Paging.at(query.cursor, question, query.clip_fields, query.max_distance)
     candidates, anchor = _rank(lib, method, clip_filter, query_segment, excluded, paging.anchor)
     found, more = merge_overlapping(candidates, query.limit, paging.after)
     to_score = partial(score, scale=WINDOW_SCORES[method])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from app.search.ranking import cursor as cursors
 from app.search.ranking.cursor import Anchor, Position
@@ -44,6 +44,11 @@ class MatchPage:
     anchor: Anchor | None = None
     scales: tuple[float, ...] = ()
 
+    def within(self, max_distance: float) -> MatchPage:
+        """The page of a ranking that ends at `max_distance`, inclusive."""
+        near = [match for match in self.matches if match.distance <= max_distance]
+        return self if len(near) == len(self.matches) else replace(self, matches=near, more=False)
+
 
 @dataclass(frozen=True, slots=True)
 class Paging:
@@ -51,20 +56,27 @@ class Paging:
 
     question: digest of the query, which binds a cursor to it; after: the last hit of the page
     before, None for the first page; clip_fields: the fields of each hit's clip that are needed,
-    None for all.
+    None for all; max_distance: of the hits, None for any.
     """
 
     question: str
     after: Position | None
     clip_fields: frozenset[str] | None = None
+    max_distance: float | None = None
 
     @classmethod
     def at(
-        cls, cursor: str | None, question: str, clip_fields: frozenset[str] | None = None
+        cls,
+        cursor: str | None,
+        question: str,
+        clip_fields: frozenset[str] | None = None,
+        max_distance: float | None = None,
     ) -> Paging:
         """The page at a client's cursor. Raises PageNotFound if the cursor is of another query."""
+        if max_distance is not None:
+            question = cursors.digest(question, max_distance)
         after = None if cursor is None else cursors.decode(cursor, question)
-        return cls(question, after, clip_fields)
+        return cls(question, after, clip_fields, max_distance)
 
     @property
     def anchor(self) -> Anchor | None:
@@ -77,6 +89,8 @@ class Paging:
         A match whose clip was deleted in the meantime is left out; it keeps its rank.
         to_score: from a distance to a score, 0..1.
         """
+        if self.max_distance is not None:
+            page = page.within(self.max_distance)
         before = self.after.rank if self.after else 0
         with lib.store.read() as tx:
             clips = self._clips(tx, {match.clip_id: None for match in page.matches})

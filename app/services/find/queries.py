@@ -8,6 +8,7 @@ from typing import Any
 
 from app.search.example.methods import Method
 from app.services.find.query_source import QuerySource
+from app.services.volume_options import STORED_VOLUMES, VolumeOptions
 from app.store.clips.filter import ClipFilter
 
 DEFAULT_LIMIT = 10
@@ -25,6 +26,9 @@ Filter = ClipFilter | Mapping[str, Any] | None
 class MotionQuery:
     """A search by example.
 
+    max_distance: hits are at most this far, in the unit of their `distance` (tau of Sun 2011,
+    section 2); None for all. volumes: how the methods msv-dtw and msv-xcorr compare.
+
     scope: "clips" compares whole clips; "windows" finds parts of clips, at any time in a clip;
     "segments" finds motions from one keypose to the next. segment: only with scope "segments", the
     index of a segment of the queried clip, which is then the query. tempo: for the method fused
@@ -41,6 +45,8 @@ class MotionQuery:
     scope: str = "clips"
     segment: int | None = None
     tempo: str = "any"
+    max_distance: float | None = None
+    volumes: VolumeOptions = STORED_VOLUMES
     include_self: bool = False
     cursor: str | None = None
     clip_fields: frozenset[str] | None = None

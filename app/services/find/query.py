@@ -34,13 +34,14 @@ class QueryDescriptors:
 
     arrays: descriptors by name, see `app.analysis.array_shapes`; clip: the stored clip, if the
     query is one; stored_as: the clip that was made from the same file, if the query is an upload
-    that the library already has.
+    that the library already has; motion: of an upload, or of a part of a clip.
     """
 
     source: QuerySource
     arrays: Arrays
     clip: ClipRecord | None
     stored_as: ClipRecord | None = None
+    motion: Motion | None = None
 
     @property
     def seconds(self) -> float:
@@ -84,8 +85,24 @@ def describe(lib: Library, source: QuerySource, names: tuple[str, ...]) -> Query
     if source.clip_id is not None:
         return _describe_clip(lib, source, source.clip_id, names)
     request = analysis_request(source, lib.settings.max_upload_bytes)
-    arrays = _describe_upload(lib, source, request, names)
-    return QueryDescriptors(source, arrays, None, _stored_as(lib, request))
+    analysis = lib.pool.analyze(request)
+    motion = analysis.motion
+    if not source.is_whole:
+        motion = cut(motion, source.start, source.end)
+    # the motion symbol is slow, so an upload has it only if it is asked for
+    known = analysis.arrays if source.is_whole else {}
+    missing = tuple(name for name in names if name not in known)
+    arrays = known | _described(motion, missing) if missing else known
+    return QueryDescriptors(source, arrays, None, _stored_as(lib, request), motion)
+
+
+def query_motion(lib: Library, query: QueryDescriptors) -> Motion:
+    """The motion of a query that `describe` has described."""
+    if query.motion is not None:
+        return query.motion
+    if query.clip is None:
+        raise ValueError("a query is a clip or has a motion")
+    return load_motion(lib, query.clip)
 
 
 def analysis_request(source: QuerySource, max_bytes: int) -> AnalysisRequest:
@@ -135,18 +152,7 @@ def _describe_clip(
         if source.is_whole:
             return QueryDescriptors(source, descriptors_of(tx, clip, names), clip)
     part = cut(load_motion(lib, clip), source.start, source.end)
-    return QueryDescriptors(source, _described(part, names), clip)
-
-
-def _describe_upload(
-    lib: Library, source: QuerySource, request: AnalysisRequest, names: tuple[str, ...]
-) -> Arrays:
-    analysis = lib.pool.analyze(request)
-    if not source.is_whole:
-        return _described(cut(analysis.motion, source.start, source.end), names)
-    # the motion symbol is slow, so an upload has it only if it is asked for
-    missing = tuple(name for name in names if name not in analysis.arrays)
-    return analysis.arrays | _described(analysis.motion, missing) if missing else analysis.arrays
+    return QueryDescriptors(source, _described(part, names), clip, motion=part)
 
 
 def _stored_as(lib: Library, request: AnalysisRequest) -> ClipRecord | None:

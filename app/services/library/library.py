@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Self
 
 from app.analysis.descriptors.windows import WIDTH, WINDOW_SCALES
@@ -81,7 +80,7 @@ class Library:
             word_scores=ModelRows(),
             symbol_points=ModelRows(),
             cca_points=ModelRows(),
-            pool=AnalysisPool(query_limits(settings), cache=cache_folder(settings)),
+            pool=AnalysisPool(query_limits(settings), cache=settings.cache_dir),
             windows={
                 scale.name: VectorIndex(layout=parts_layout(scale.vectors, scale.spans, WIDTH))
                 for scale in WINDOW_SCALES
@@ -97,11 +96,6 @@ class Library:
         """Stop the analysis processes and close the database connections."""
         self.pool.close()
         self.store.close()
-
-
-def cache_folder(settings: Settings) -> Path:
-    """The folder for code that libraries compile; analysis processes can write to it."""
-    return settings.data_dir / "cache"
 
 
 def query_limits(settings: Settings) -> Limits:

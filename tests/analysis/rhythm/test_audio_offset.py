@@ -21,7 +21,7 @@ def stops_at(times: FloatArray, duration: float = DANCED) -> Stops:
 
 def played(full: FloatArray) -> Onsets:
     """A recording in which as much begins at each moment as `full` says."""
-    return Onsets(full, full, full, full, len(full) / RATE)
+    return Onsets(full, full, full, len(full) / RATE)
 
 
 def beats(first: float, count: int) -> FloatArray:

@@ -33,7 +33,7 @@ def made(seed: int, sound: Sound, offset: float) -> tuple[DemoClip, BodyTrack, O
 @pytest.mark.parametrize("sound", Sound)
 @pytest.mark.parametrize("offset", [-2.37, 0.0, 0.61])
 def test_a_known_offset_is_estimated_up_to_whole_beats(sound: Sound, offset: float) -> None:
-    clip, track, onsets = made(5, sound, offset)
+    clip, track, onsets = made(21, sound, offset)
     rhythm = find_rhythm(track, onsets=onsets)
     assert rhythm.offset is not None
     assert not rhythm.offset.is_given

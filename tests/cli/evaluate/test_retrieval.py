@@ -31,7 +31,8 @@ def test_json_for_programs(kinedex: Kinedex) -> None:
     result = kinedex(*QUICK, "--classes", "walk,kick", "--eta", "0.4", "--json").json()
     names = [row["method"] for row in result["figures"]]
     assert names[:3] == ["vector", "msv-xcorr", "msv-xcorr q=1"]
-    assert names[3:] == ["msv-xcorr q=1 eta=0.4", "msv-xcorr q=2 eta=0.4"]
+    assert names[3:5] == ["msv-xcorr q=1 eta=0.4", "msv-xcorr q=2 eta=0.4"]
+    assert names[5:] == ["rho alone", "msv-xcorr normalized"]
     rates = result["true_positive_rates"]
     assert (rates["classes"], rates["k"], rates["mixture"]) == (["walk", "kick"], 20, 12)
     for name in names:

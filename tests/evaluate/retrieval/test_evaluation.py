@@ -24,7 +24,10 @@ def test_retrieval_judges_the_rankings_of_searches(
     methods = [Method.FUSED, Method.VECTOR, *SUN_METHODS]
     found = evaluate.judge_retrieval(ready_library, methods=methods)
     names = [judged.figures.method for judged in found.methods]
-    assert names == [*methods, "msv-dtw q=1", "msv-xcorr q=1"]
+    assert names == [
+        *methods,
+        *("msv-dtw q=1", "msv-xcorr q=1", "rho alone", "msv-xcorr normalized"),
+    ]
     for judged in found.methods[: len(methods)]:
         hits = 0
         for clip in ready_clips:
@@ -44,8 +47,9 @@ def test_progress_reaches_the_total(ready_library: Library) -> None:
         threshold=0.3,
         progress=lambda *step: steps.append(step),
     )
-    # 12 queries by two methods, and by one with three other settings of 12 volumes each
-    assert steps == [(done, 96) for done in range(1, 97)]
+    # 12 queries by two methods, by two rankings of the stored factors, and by one method with three
+    # other settings of 12 volumes each
+    assert steps == [(done, 120) for done in range(1, 121)]
 
 
 def test_the_tables_of_the_paper(ready_library: Library) -> None:
@@ -61,6 +65,8 @@ def test_the_tables_of_the_paper(ready_library: Library) -> None:
     # three clips a class: two are relevant, so that both look at the same two
     np.testing.assert_allclose(judged.rates, np.diag(judged.confusion)[[1, 2]])
     assert judged.overall == pytest.approx(judged.rates.mean())
+    assert judged.overall_confusion == pytest.approx(np.diag(judged.confusion).mean())
+    assert found.sizes == (3, 3, 3, 3)
 
 
 def test_with_a_threshold_above_all_distances_only_durations_are_compared(
@@ -69,7 +75,7 @@ def test_with_a_threshold_above_all_distances_only_durations_are_compared(
     found = evaluate.judge_retrieval(ready_library, methods=SUN_METHODS, threshold=50.0)
     by_name = {judged.figures.method: judged for judged in found.methods}
     assert set(by_name) == {
-        *SUN_METHODS, "msv-dtw q=1", "msv-xcorr q=1",
+        *SUN_METHODS, "rho alone", "msv-xcorr normalized", "msv-dtw q=1", "msv-xcorr q=1",
         "msv-dtw q=1 eta=50", "msv-xcorr q=1 eta=50",
         "msv-dtw q=2 eta=50", "msv-xcorr q=2 eta=50",
     }  # fmt: skip

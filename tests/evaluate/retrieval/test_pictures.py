@@ -29,6 +29,10 @@ def test_every_picture_is_drawn_and_named(
         "confusion-vector.svg",
         "confusion-msv-xcorr.svg",
         "confusion-msv-xcorr-q1.svg",
+        "confusion-msv-xcorr-normalized.svg",
+        "confusion-rho-alone.svg",
+        "matrices.svg",
+        "volumes.svg",
         "vectors.svg",
         "convergence.svg",
     }

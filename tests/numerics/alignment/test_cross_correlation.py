@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from app.numerics.alignment import cross_correlation
 from app.numerics.alignment.cross_correlation import (
+    max_contained_cosines,
     max_cross_correlations,
     max_cross_correlations_of_rows,
 )
@@ -93,3 +94,22 @@ def test_empty_sequences_have_correlation_zero() -> None:
     assert max_cross_correlations(np.ones(3), [np.zeros(0), np.ones(2)]).tolist() == [0.0, 2.0]
     assert max_cross_correlations_of_rows(np.ones(3), np.zeros((0, 3))).shape == (0,)
     assert max_cross_correlations_of_rows(np.ones(3), np.zeros((2, 0))).tolist() == [0.0, 0.0]
+
+
+def test_the_cosine_of_a_part_is_one_at_any_length_and_gain() -> None:
+    rng = np.random.default_rng(7)
+    long = 1 + 0.2 * rng.random(90)
+    parts = [2.0 * long[10:40], long[5:6], long, long[:0]]
+    np.testing.assert_allclose(max_contained_cosines(long, parts), [1, 1, 1, 0], atol=1e-9)
+    for part in parts:
+        assert max_contained_cosines(part, [long]) == max_contained_cosines(long, [part])
+
+
+def test_contained_cosines_equal_a_loop_over_lags() -> None:
+    rng = np.random.default_rng(8)
+    query, candidates = rng.normal(size=20), [rng.normal(size=n) for n in (3, 20, 47)]
+    for candidate, found in zip(candidates, max_contained_cosines(query, candidates), strict=True):
+        short, long = sorted((query, candidate), key=len)
+        pieces = [long[k : k + len(short)] for k in range(len(long) - len(short) + 1)]
+        cosines = [p @ short / np.linalg.norm(p) / np.linalg.norm(short) for p in pieces]
+        assert found == pytest.approx(max(cosines), abs=1e-9)

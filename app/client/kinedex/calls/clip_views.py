@@ -71,3 +71,48 @@ def get_thumbnail(clip_id: str) -> Call[str]:
         text,
         accept="*/*",
     )
+
+
+def get_self_similarity(
+    clip_id: str, *, q: int | None = None, eta: float | None = None, time: float | None = None
+) -> Call[str]:
+    """The self-similarity matrix of one pose: the distances between its joints.
+
+    Figure 3 of Sun 2011. Distances are in body lengths; the darkest cell is the largest distance
+    of the clip.
+
+    q: The norm of the distances, 1 or 2. Default: 2.
+    eta: Above 0: a cell is dark where two joints are at most this many body lengths apart. 0:
+        the darker, the farther apart. Default: 0.0.
+    time: Seconds: the moment of the matrix. Default: the middle of the active part.
+    """
+    return Call(
+        "get_self_similarity",
+        "GET",
+        path_of("/v1/clips/{clip_id}/ssm.svg", clip_id=clip_id),
+        text,
+        query=given(q=q, eta=eta, time=time),
+        accept="*/*",
+    )
+
+
+def get_motion_volume(
+    clip_id: str, *, q: int | None = None, eta: float | None = None, slices: int | None = None
+) -> Call[str]:
+    """The motion volume: the self-similarity matrices of the clip over time.
+
+    Figure 5 of Sun 2011.
+
+    q: The norm of the distances, 1 or 2. Default: 2.
+    eta: Above 0: a cell is dark where two joints are at most this many body lengths apart. 0:
+        the darker, the farther apart. Default: 0.0.
+    slices: Number of slices, evenly over the active part. Default: 10.
+    """
+    return Call(
+        "get_motion_volume",
+        "GET",
+        path_of("/v1/clips/{clip_id}/msv.svg", clip_id=clip_id),
+        text,
+        query=given(q=q, eta=eta, slices=slices),
+        accept="*/*",
+    )

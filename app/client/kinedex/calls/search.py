@@ -32,6 +32,10 @@ def search_motion(
     limit: int | None = None,
     scope: Literal["clips", "windows", "segments"] | None = None,
     tempo: Literal["any", "same"] | None = None,
+    max_distance: float | None = None,
+    q: int | None = None,
+    eta: float | None = None,
+    normalized: bool | None = None,
     include_self: bool | None = None,
     filter: Filter | Mapping[str, Any] | None = None,
     cursor: str | None = None,
@@ -70,6 +74,21 @@ def search_motion(
         slower, cut, or repeated; of two equal hits, the one at the tempo of the query comes
         first. same: tempo is a part of the motion, and whole clips are compared as they are.
         Default: any.
+    max_distance: Only hits whose `distance` is at most this; `limit` and `next` still make
+        pages. Units of distances: vector: of motion vectors, Euclidean. dtw: body lengths, the
+        mean over aligned frames. fused: of both and of the graph of neighbors; behind the 300
+        nearest it goes on from the last of them. msv-dtw: D_dtw (Sun 2011, equation 7).
+        msv-xcorr: 3 - D_xcorr (equation 6). metric-*: Euclidean, in learned coordinates.
+    q: For methods msv-dtw and msv-xcorr with scope clips: the norm of the distances between
+        joints, 1 or 2 (Sun 2011, equation 2). With 1, the volumes of all clips that pass the
+        filter are computed for the search, 20 ms each; at most 1000 clips. Default: 2.
+    eta: For the same methods: above 0, a cell of a self-similarity matrix is 1 where two joints
+        are at most this many body lengths apart, else 0. 0, the paper's choice, keeps the
+        distances. It costs as much as q = 1. Default: 0.0.
+    normalized: For method msv-xcorr. As printed, D_xcorr of two motions falls with the ratio of
+        their lengths: of T and U > T frames, the correlation in time is about sqrt(T / U) at
+        most. true: the shorter motion is compared with parts of the longer one as long as it, so
+        that a long motion can be like a short one. Default: False.
     include_self: Whether the query clip may be a hit. A file that is stored already counts as
         its clip. With scope windows and segments: whether parts that overlap the query may be
         hits. Default: False.
@@ -97,6 +116,10 @@ def search_motion(
             limit=limit,
             scope=scope,
             tempo=tempo,
+            max_distance=max_distance,
+            q=q,
+            eta=eta,
+            normalized=normalized,
             include_self=include_self,
             filter=filter,
             cursor=cursor,
@@ -115,6 +138,10 @@ def search_motion(
             limit=limit,
             scope=scope,
             tempo=tempo,
+            max_distance=max_distance,
+            q=q,
+            eta=eta,
+            normalized=normalized,
             include_self=include_self,
             filter=filter,
             cursor=cursor,

@@ -13,6 +13,8 @@ class PoseHit(Record):
     """A time at which a clip takes a pose; it stays near the pose from start to end.
 
     score: Higher is closer.
+    distance: Its unit depends on the search; `max_distance` of a search by example names those
+    of the methods.
     start: Start of the found part, seconds from the start of the clip. 0 with scope clips.
     end: End of the found part, seconds.
     time: Seconds: when the clip is nearest to the pose.
