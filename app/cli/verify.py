@@ -23,14 +23,13 @@ def verify(context: typer.Context, as_json: AsJson = False) -> None:
 
     This reads the pages and references of the database, every array, and every stored file, which
     it compares with its SHA-256. You can run it while the library is in use.
+    `kinedex doctor --mend` mends what it finds.
     """
-    from app.store.upkeep.verify import verify as verify_store
+    from app.services.mending import examine
 
     with open_store(context) as store, progress_bar() as bar:
         task = bar.add_task("reading", total=None)
-        report = verify_store(
-            store, lambda done, total: bar.update(task, completed=done, total=total)
-        )
+        report = examine(store, lambda done, total: bar.update(task, completed=done, total=total))
         bar.update(task, completed=1, total=1)
     if as_json:
         print_json({"is_whole": report.is_whole, **asdict(report)})
@@ -45,6 +44,7 @@ def _print_report(report: VerificationReport) -> None:
     for noun, names in (
         ("damage of the database", report.damage),
         ("array that cannot be read", report.unreadable),
+        ("missing array", report.lacking),
         ("missing file", report.missing),
         ("damaged file", report.damaged),
     ):

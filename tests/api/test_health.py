@@ -15,7 +15,7 @@ from app.demo import DemoClip
 from app.store.files.id_file import NAME, write_id
 from tests.api.conftest import assert_problem
 from tests.full_disk import fill, small_disk
-from tests.live import Live, serve, wait_until
+from tests.live import NET_S, Live, serve, wait_until
 
 RECOVERED_WITHIN = 60.0
 
@@ -118,9 +118,24 @@ def test_a_damaged_file_is_never_sent(service: Live, take: DemoClip) -> None:
             flipped = take.content[len(take.content) // 2] ^ 1
             file.write(bytes([flipped]))
         assert_problem(client.get(f"/v1/clips/{clip}/file"), 500, "file_damaged")
+        # Everything else can be answered, so the service stays ready, and tells it.
+        wait_until(lambda: _warnings(client) == ["stored files that are damaged: 1"], NET_S)
         assert service.upload(take).status_code == 200  # the same bytes again mend it
         assert client.get(f"/v1/clips/{clip}/file").content == take.content
+        wait_until(lambda: _warnings(client) == [], NET_S)
+        path.rename(path.with_suffix(".away"))
+        assert client.get(f"/v1/clips/{clip}/file").status_code >= 400
+        wait_until(lambda: _warnings(client) == ["stored files that are missing: 1"], NET_S)
+        path.with_suffix(".away").rename(path)
+        wait_until(lambda: _warnings(client) == [], NET_S)
         assert client.delete(f"/v1/clips/{clip}").status_code == 204
+
+
+def _warnings(client: httpx2.Client) -> list[str]:
+    ready = client.get("/readyz")
+    assert ready.status_code == 200
+    assert {place["location"] for place in ready.json()["warnings"]} <= {"files"}
+    return [place["message"] for place in ready.json()["warnings"]]
 
 
 def test_only_its_owner_can_read_the_data_directory(tmp_path: Path) -> None:

@@ -22,8 +22,8 @@ def library(kinedex: Kinedex, data_dir: Path, tmp_path: Path) -> Path:
     return copy
 
 
-def _problems(kinedex: Kinedex, **settings: Any) -> dict[str, dict[str, str]]:
-    ended = kinedex("doctor", "--json", **settings)
+def _problems(kinedex: Kinedex, *words: str, **settings: Any) -> dict[str, dict[str, str]]:
+    ended = kinedex("doctor", "--json", *words, **settings)
     checks = json.loads(ended.out)
     problems = {one["check"]: one for one in checks["checks"] if one["level"] == "problem"}
     assert ended.code == (1 if problems else 0)
@@ -55,6 +55,45 @@ def test_missing_files(kinedex: Kinedex, library: Path) -> None:
             file.unlink()
             break
     assert "1 of " in _problems(kinedex, data_dir=library)["files"]["found"]
+    assert "1 of " in _problems(kinedex, "--quick", data_dir=library)["files"]["found"]
+
+
+def test_damage_is_found_and_mended_from_a_backup(kinedex: Kinedex, library: Path) -> None:
+    backup = library.parent / "backup"
+    shutil.copytree(library, backup)
+    path = next(p for p in (library / "files").rglob("*") if len(p.name) == 64)
+    content = path.read_bytes()
+    path.write_bytes(bytes([content[0] ^ 1]) + content[1:])
+    with closing(sqlite3.connect(library / "kinedex.sqlite3")) as opened:
+        opened.execute(
+            "UPDATE clip_arrays SET shape = '7' WHERE name = 'positions' AND clip_id ="
+            " (SELECT max(clip_id) FROM clip_arrays)"
+        )
+        opened.commit()
+    assert path.name in _problems(kinedex, data_dir=library)["files"]["found"]
+    assert _problems(kinedex, "--quick", data_dir=library) == {}
+    unmended = _problems(kinedex, "--mend", data_dir=library)
+    assert path.name in unmended["files"]["found"]
+    assert path.read_bytes() != content
+    assert _problems(kinedex, "--mend", "--from", str(backup), data_dir=library) == {}
+    assert path.read_bytes() == content
+    assert kinedex("reanalyze", data_dir=library).code == 0
+    assert kinedex("verify", "--json", data_dir=library).json()["is_whole"]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("--mend", "--quick"),
+        ("--from", "a"),
+        ("--mend", "--from", "no/backup"),
+        ("--mend", "--url", "http://127.0.0.1:9"),
+    ],
+)
+def test_options_that_do_not_fit_are_refused(kinedex: Kinedex, words: tuple[str, ...]) -> None:
+    refused = kinedex("doctor", *words)
+    assert (refused.code, "Traceback" in refused.err) == (1, False)
+    assert words[0].removeprefix("--") in refused.err or "from" in refused.err
 
 
 def test_an_old_and_a_damaged_database(kinedex: Kinedex, library: Path) -> None:

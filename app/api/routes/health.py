@@ -9,7 +9,10 @@ from app.api.failures.problems import NotReadyYet, Unhealthy
 from app.api.guard.admission import OwnThreads, at_once
 from app.api.openapi import refusals
 from app.api.schemas.health import Alive, Ready
+from app.api.schemas.problem import ProblemPlace
 from app.services.library.library import Library
+from app.store.upkeep.file_watch import FileWatch
+from app.store.upkeep.health import FILES
 
 router = APIRouter(tags=["service"])
 
@@ -28,7 +31,8 @@ async def readyz(lib: Lib) -> Ready:
 
     The answer is 503 before the index is loaded, and while the database is damaged, deleted or
     replaced, the folder of files is missing or replaced, or nothing can be written. `errors` names
-    every problem.
+    every problem. Stored files that are missing or damaged are counted in `warnings`, because the
+    answer stays 200: only downloads and new analyses need these files.
     """
     return await _threads.run(lambda: _look(lib))
 
@@ -39,4 +43,18 @@ def _look(lib: Library) -> Ready:
         raise Unhealthy(places=troubles)
     if not lib.index.is_loaded:
         raise NotReadyYet
-    return Ready(library_version=lib.index.version, clips=len(lib.index))
+    return Ready(
+        library_version=lib.index.version,
+        clips=len(lib.index),
+        warnings=_warnings(lib.health.files),
+    )
+
+
+def _warnings(files: FileWatch) -> list[ProblemPlace]:
+    """The numbers of bad files. It names none, because anybody can read this without a key."""
+    counts = {"missing": len(files.bad.missing), "damaged": len(files.bad.damaged)}
+    return [
+        ProblemPlace(location=FILES, message=f"stored files that are {kind}: {count}")
+        for kind, count in counts.items()
+        if count
+    ]

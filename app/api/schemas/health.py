@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from typing import Literal
 
+from pydantic import Field
+
 from app.api.schemas.base import Outgoing
+from app.api.schemas.problem import ProblemPlace
 
 
 class Alive(Outgoing):
@@ -19,3 +22,7 @@ class Ready(Outgoing):
     status: Literal["ready"] = "ready"
     library_version: int
     clips: int
+    warnings: list[ProblemPlace] = Field(
+        description="What is damaged although every call can be answered, such as stored files: "
+        "`kinedex doctor --mend` mends it.",
+    )

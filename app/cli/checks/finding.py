@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from pathlib import Path
 
 
 class Level(StrEnum):
@@ -24,6 +25,19 @@ class Finding:
     level: Level
     found: str
     advice: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Care:
+    """How thorough `kinedex doctor` is.
+
+    is_quick: do not read the contents of files and arrays; mends: mend what is damaged; backup:
+    where whole files may be.
+    """
+
+    is_quick: bool = False
+    mends: bool = False
+    backup: Path | None = None
 
 
 def fine(check: str, found: str) -> Finding:

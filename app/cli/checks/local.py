@@ -1,4 +1,4 @@
-"""Checks the installation and the library of this machine. Nothing is created or changed."""
+"""Checks the installation and the library of this machine. Without --mend, nothing is changed."""
 
 from __future__ import annotations
 
@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from app.cli.checks.finding import Finding, fine, note, problem
+from app.cli.checks.contents import REPAIR, check_contents, check_names
+from app.cli.checks.finding import Care, Finding, fine, note, problem
 from app.cli.checks.queue import check_disk, check_queue
 from app.cli.settings import settings_of
-from app.errors import ConfigurationError
+from app.errors import BadField, ConfigurationError
 from app.kinedex_error import KinedexError
 
 if TYPE_CHECKING:
@@ -29,13 +30,9 @@ EXTRAS = {
     "dataframes": ("pandas", "`to_dataframe()` of the Python client"),
 }
 """By extra: the module that it installs, and what needs it."""
-REPAIR = (
-    "Stop all processes of Kinedex, and restore a backup (see Back up in the README); "
-    "`kinedex verify` lists all damage."
-)
 
 
-def check_machine(context: typer.Context) -> Iterator[Finding]:
+def check_machine(context: typer.Context, care: Care) -> Iterator[Finding]:
     """Settings, data directory, database, files, worker, port, isolation and extras."""
     try:
         settings = settings_of(context)
@@ -47,7 +44,7 @@ def check_machine(context: typer.Context) -> Iterator[Finding]:
     yield from folder
     if settings.data_dir.is_dir():
         yield check_disk(shutil.disk_usage(settings.data_dir).free)
-        yield from _check_library(settings)
+        yield from _check_library(settings, care)
     yield _check_address(settings)
     yield _check_isolation()
     yield from _check_extras()
@@ -76,7 +73,7 @@ def _check_folder(settings: Settings) -> Iterator[Finding]:
         yield note("permissions", f"another account owns {path}")
 
 
-def _check_library(settings: Settings) -> Iterator[Finding]:
+def _check_library(settings: Settings, care: Care) -> Iterator[Finding]:
     """The database and the files of an existing library."""
     from app.store import identity
     from app.store.database import schema
@@ -95,36 +92,25 @@ def _check_library(settings: Settings) -> Iterator[Finding]:
         return
     yield fine("database", f"schema {schema.state(settings.database).current} is current")
     try:
-        yield from _check_store(store)
+        yield from _check_store(store, care)
     finally:
         store.close()
 
 
-def _check_store(store: Store) -> Iterator[Finding]:
+def _check_store(store: Store, care: Care) -> Iterator[Finding]:
     from datetime import UTC, datetime
 
-    from app.store.jobs import references
     from app.store.upkeep.counts import count_clips_by_state, count_open_jobs
 
     try:
-        damage = store.database.find_damage(quick=True)
-        if damage:
-            yield problem("database", f"it is damaged: {damage[0]}", REPAIR)
-        else:
-            yield fine("integrity", "a quick check found no damage")
+        yield from check_names(store) if care.is_quick else check_contents(store, care)
         with store.read() as tx:
-            needed, jobs = references.referenced(tx), count_open_jobs(tx)
-            clips = count_clips_by_state(tx)
+            jobs, clips = count_open_jobs(tx), count_clips_by_state(tx)
+    except BadField:
+        raise
     except KinedexError as failure:
         yield problem("database", failure.detail, REPAIR)
         return
-    missing = sum(1 for sha256 in needed if not store.files.has(sha256))
-    if missing:
-        found = f"{missing} of {len(needed)} stored files are missing"
-        advice = "Put the folder `files` back, or upload the files again: `kinedex verify`."
-        yield problem("files", found, advice)
-    else:
-        yield fine("files", f"all {len(needed)} stored files are there")
     if clips.get("failed"):
         advice = "`kinedex clips list --state failed` lists them, `clips show` says why."
         noun = "clip" if clips["failed"] == 1 else "clips"

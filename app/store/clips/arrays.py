@@ -10,7 +10,7 @@ from sqlalchemy import bindparam, delete, insert, select
 
 from app.errors import NotFound
 from app.store.clips.repository import in_batches
-from app.store.database.blobs import from_blob, to_blob
+from app.store.database.blobs import from_blob, from_blob_if_whole, to_blob
 from app.store.database.engine import Tx
 from app.store.database.tables import clip_arrays
 
@@ -79,8 +79,8 @@ def get_many(
 ) -> dict[str, NDArray[Any]]:
     """One array of many clips by clip id, read-only, in the order of `clip_ids`.
 
-    Clips without the array are left out. With `version`, clips whose array has another version
-    are left out too.
+    Clips without the array, or whose array is damaged, are left out. With `version`, clips whose
+    array has another version are left out too.
     """
     array_of: dict[str, NDArray[Any]] = {}
     for batch in in_batches(clip_ids):
@@ -89,8 +89,10 @@ def get_many(
             rows = tx.execute(_OF_MANY, parameters)
         else:
             rows = tx.execute(_OF_VERSION, parameters | {"the_version": version})
-        for clip_id, dtype, shape, data in rows.all():
-            array_of[clip_id] = from_blob(dtype, shape, data)
+        for clip_id, *content in rows.all():
+            array = from_blob_if_whole(*content)
+            if array is not None:
+                array_of[clip_id] = array
     return {clip_id: array_of[clip_id] for clip_id in clip_ids if clip_id in array_of}
 
 

@@ -20,7 +20,7 @@ from sqlalchemy import and_, bindparam, func, select
 from app.store.clips.measures import FOUND
 from app.store.clips.metadata_values import MetadataValue, from_text
 from app.store.clips.record import ClipState
-from app.store.database.blobs import from_blob
+from app.store.database.blobs import from_blob_if_whole
 from app.store.database.engine import Tx
 from app.store.database.tables import clip_arrays, clip_metadata, clip_words, clips
 
@@ -93,8 +93,8 @@ class IndexedClip:
     """The data of a clip that a search needs to rank and filter it.
 
     duration: seconds; array: the requested array, read-only, None if the clip does not have it
-    (an earlier version of the analysis did not compute it); folder: None if the clip came without
-    a path.
+    (an earlier version of the analysis did not compute it) or if it is damaged; folder: None if the
+    clip came without a path.
     """
 
     id: str
@@ -134,7 +134,7 @@ def _indexed(row: Sequence[Any]) -> IndexedClip:
         source,
         duration or 0.0,
         _word_set(words or ""),
-        None if data is None else from_blob(dtype, shape, data),
+        None if data is None else from_blob_if_whole(dtype, shape, data),
         folder,
         _metadata_of(metadata or ""),
         tuple(math.nan if value is None else value for value in measures),

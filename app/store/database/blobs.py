@@ -40,6 +40,14 @@ def from_blob(dtype: str, shape: str, data: bytes) -> NDArray[Any]:
     return np.frombuffer(data, dtype=np.dtype(dtype)).reshape(_lengths(shape))
 
 
+def from_blob_if_whole(dtype: str, shape: str, data: bytes) -> NDArray[Any] | None:
+    """As `from_blob`, but None for a damaged array: one clip must not stop the search of all."""
+    try:
+        return from_blob(dtype, shape, data)
+    except (TypeError, ValueError):
+        return None
+
+
 @lru_cache(maxsize=1024)
 def _lengths(shape: str) -> tuple[int, ...]:
     # Cached, because an index reads many arrays of the same shape.

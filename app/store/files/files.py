@@ -69,6 +69,8 @@ class FileStore:
         self.root = root
         self.library_id = library_id
         self.quarantine = Quarantine(root / FOLDER)
+        self.suspects: set[str] = set()
+        """Files that somebody found missing or damaged; `FileWatch` takes them and looks again."""
         self._temporaries = root / "tmp"
         self._checked = HashChecker()
 
@@ -115,6 +117,7 @@ class FileStore:
         """
         path = self._path_of(sha256)
         if not path.is_file() and not self.bring_back(sha256):
+            self.suspects.add(sha256)
             raise NotFound(f"The file {sha256} is not in the store")
         return path
 
@@ -129,8 +132,12 @@ class FileStore:
     def checked_path(self, sha256: str) -> Path:
         """As `path`, but the file is checked for damage; raises FileDamaged too."""
         path = self.path(sha256)
-        with _disk_failures():
-            self._checked.check(path)
+        try:
+            with _disk_failures():
+                self._checked.check(path)
+        except StorageError:
+            self.suspects.add(sha256)
+            raise
         return path
 
     def remove(self, sha256: str) -> None:

@@ -3,7 +3,7 @@
 Cheap checks run at each call: the database has still the same file and can be read, and the folder
 of files belongs to the library. A test write is repeated after WRITE_INTERVAL_S. A background
 thread reads all pages of the database: at the start, when its file was changed, from time to time,
-and after a request met damage.
+and after a request met damage. Another thread reads the files (`FileWatch`).
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from app.kinedex_error import Place
 from app.store.clips import versions as library
 from app.store.database.ids import new_id
 from app.store.store import Store
+from app.store.upkeep.file_watch import FileWatch
 
 _log = logging.getLogger(__name__)
 
@@ -47,9 +48,14 @@ anybody can read them without a key."""
 
 
 class Health:
-    """Checks one store; safe to share between threads."""
+    """Checks one store; safe to share between threads.
+
+    files: which stored files are missing or damaged. The service works without them, so they are no
+    troubles.
+    """
 
     def __init__(self, store: Store) -> None:
+        self.files = FileWatch(store)
         self._store = store
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._check_pages, name="check-pages", daemon=True)
@@ -61,12 +67,14 @@ class Health:
         self._last_troubles: tuple[Place, ...] = ()
 
     def start(self) -> None:
-        """Start the background checks of the database's pages; they also make the reserve."""
+        """Start the background checks of pages and files; they also make the reserve."""
         self._thread.start()
+        self.files.start()
 
     def stop(self) -> None:
         """Stop the background checks. A check that is running ends with the process."""
         self._stop.set()
+        self.files.stop()
         self._thread.join(STOP_TIMEOUT_S)
 
     def troubles(self) -> tuple[Place, ...]:

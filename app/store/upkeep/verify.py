@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
+from contextlib import suppress
 from dataclasses import dataclass
 
 from sqlalchemy import select
 
 from app.errors import DatabaseDamaged, FileDamaged, NotFound
-from app.store.database.blobs import from_blob
-from app.store.database.tables import clip_arrays, model_arrays
+from app.store.clips.record import ClipState
+from app.store.database.blobs import from_blob_if_whole
+from app.store.database.tables import clip_arrays, clips, model_arrays
 from app.store.files.hash_check import HashChecker
 from app.store.files.quarantine import QuarantineContent
 from app.store.jobs import references
@@ -27,15 +29,17 @@ class VerificationReport:
     """The result of a verification.
 
     files, arrays: the number of those that were read; damage: of the database, one sentence for
-    each finding; unreadable: arrays, as `<id of clip or model>/<name>`; missing, damaged: names of
-    files; unknown: files that the database does not name, and which the next sweep moves to the
-    quarantine; quarantine: the files that are there already. The last two are no damage.
+    each finding; unreadable: arrays, as `<id of clip or model>/<name>`; lacking: the same for
+    arrays that a ready clip must have and does not; missing, damaged: names of files; unknown:
+    files that the database does not name, and which the next sweep moves to the quarantine;
+    quarantine: the files that are there already. The last two are no damage.
     """
 
     files: int
     arrays: int
     damage: tuple[str, ...]
     unreadable: tuple[str, ...]
+    lacking: tuple[str, ...]
     missing: tuple[str, ...]
     damaged: tuple[str, ...]
     unknown: tuple[str, ...]
@@ -44,11 +48,17 @@ class VerificationReport:
     @property
     def is_whole(self) -> bool:
         """Whether the library has no damage."""
-        return not (self.damage or self.unreadable or self.missing or self.damaged)
+        arrays = self.unreadable or self.lacking
+        return not (self.damage or arrays or self.missing or self.damaged)
 
 
-def verify(store: Store, progress: Progress | None = None) -> VerificationReport:
-    """Reads the whole library, while others use it. Raises StorageError."""
+def verify(
+    store: Store, progress: Progress | None = None, *, needed_arrays: Collection[str] = ()
+) -> VerificationReport:
+    """Reads the whole library, while others use it. Raises StorageError.
+
+    needed_arrays: names of the arrays that every ready clip must have.
+    """
     damage = list(store.database.find_damage())
     try:
         with store.read() as tx:
@@ -67,6 +77,7 @@ def verify(store: Store, progress: Progress | None = None) -> VerificationReport
         arrays=arrays,
         damage=tuple(damage),
         unreadable=unreadable,
+        lacking=_lacking(store, needed_arrays),
         missing=missing,
         damaged=damaged,
         unknown=unknown,
@@ -113,16 +124,21 @@ def _read_arrays(store: Store) -> tuple[int, tuple[str, ...]]:
             with store.read() as tx:
                 for row in tx.execution_options(yield_per=ROWS_AT_ONCE).execute(query):
                     count += 1
-                    if not _is_readable(*row[2:]):
+                    if from_blob_if_whole(*row[2:]) is None:
                         unreadable.append(f"{row[0]}/{row[1]}")
         except DatabaseDamaged:
             unreadable.append(f"{table.name}: not all rows can be read")
     return count, tuple(unreadable)
 
 
-def _is_readable(dtype: str, shape: str, data: bytes) -> bool:
-    try:
-        from_blob(dtype, shape, data)
-    except (TypeError, ValueError):
-        return False
-    return True
+def _lacking(store: Store, names: Collection[str]) -> tuple[str, ...]:
+    """The needed arrays that ready clips do not have. A damaged table was reported before."""
+    found: list[str] = []
+    for name in names:
+        has_it = select(clip_arrays.c.clip_id).where(
+            clip_arrays.c.clip_id == clips.c.id, clip_arrays.c.name == name
+        )
+        without = select(clips.c.id).where(clips.c.state == ClipState.READY.value, ~has_it.exists())
+        with suppress(DatabaseDamaged), store.read() as tx:
+            found += [f"{clip_id}/{name}" for clip_id in tx.execute(without).scalars()]
+    return tuple(sorted(found))

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from sqlalchemy import text
+from sqlalchemy import text, update
 
 from app.store.clips import arrays, index_feed
 from app.store.clips import repository as clips
 from app.store.clips import versions as library
 from app.store.clips.index_feed import IndexedClip, changed_since
+from app.store.database import tables
 from app.store.store import Store
 from tests.store.conftest import AddClip
 
@@ -71,3 +72,16 @@ def test_changed_clips_are_found_without_reading_all_clips(store: Store) -> None
         steps = [row[3] for row in tx.execute(text(f"EXPLAIN QUERY PLAN {literal}"))]
     assert "ix_clips_changed_version" in steps[0]
     assert not any("SCAN" in step or "TEMP B-TREE" in step for step in steps)
+
+
+def test_a_damaged_array_leaves_one_clip_out_of_the_index(store: Store, add_clip: AddClip) -> None:
+    made = [add_clip(name, ready=True) for name in ("walk", "run")]
+    with store.write() as tx:
+        for clip in made:
+            arrays.put_many(tx, clip.id, {"motion_vector": np.ones(8, np.float32)}, version=1)
+        its = tables.clip_arrays.c.clip_id == made[0].id
+        tx.execute(update(tables.clip_arrays).where(its).values(shape="9"))
+    found = _changes(store, 0, "motion_vector")
+    assert [clip.array is None for clip in found] == [True, False]
+    with store.read() as tx:
+        assert list(arrays.get_many(tx, [c.id for c in made], "motion_vector")) == [made[1].id]

@@ -22,7 +22,8 @@ def readyz() -> Call[Ready]:
 
     The answer is 503 before the index is loaded, and while the database is damaged, deleted or
     replaced, the folder of files is missing or replaced, or nothing can be written. `errors`
-    names every problem.
+    names every problem. Stored files that are missing or damaged are counted in `warnings`,
+    because the answer stays 200: only downloads and new analyses need these files.
     """
     from kinedex.types.health import Ready
 

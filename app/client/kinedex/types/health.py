@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from kinedex.records import Record
+from kinedex.types.problem import ProblemPlace
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,8 +18,13 @@ class Alive(Record):
 
 @dataclass(frozen=True, slots=True)
 class Ready(Record):
-    """The index is loaded, and searches are answered."""
+    """The index is loaded, and searches are answered.
+
+    warnings: What is damaged although every call can be answered, such as stored files:
+    `kinedex doctor --mend` mends it.
+    """
 
     status: Literal["ready"]
     library_version: int
     clips: int
+    warnings: list[ProblemPlace]
