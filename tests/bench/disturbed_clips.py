@@ -23,6 +23,7 @@ ARRAYS = (
     PACED,
     "features_10hz",
     "active_span",
+    "window_vectors_1s",
     POSITIONS,
     "motion_sample",
     "wide_motion_vector",

@@ -48,7 +48,7 @@ class LocalLibrary:
 
     def _load(self, clip_ids: Sequence[str], name: str) -> Arrays:
         self.read.extend((clip_id, name) for clip_id in clip_ids)
-        return {clip_id: self.clips[clip_id][name] for clip_id in clip_ids}
+        return {i: self.clips[i][name] for i in clip_ids if name in self.clips[i]}
 
     @cached_property
     def _vectors(self) -> VectorIndex:

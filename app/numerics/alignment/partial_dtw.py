@@ -11,6 +11,10 @@ an original is a part of its repetition. The other may stand still, or pass thre
 the tempo hardly matters. It also has the points halfway between its frames: so the result hardly
 depends on the times of the samples. No cell depends on its own row, so one numpy step computes a
 row of many candidates.
+
+Each frame of the whole one costs at least as much as its nearest point of the other, in any order.
+The mean of these costs is a lower bound, which takes a tenth of the time. So a caller who says from
+where on distances do not matter is spared most of the warping, and gets the same distances.
 """
 
 from __future__ import annotations
@@ -37,42 +41,91 @@ class PartialDistances:
     """The distances of a query and c candidates, in the unit of the sequences.
 
     inside: (c,) of the whole query to a part of each candidate. around: (c,) of each whole
-    candidate to a part of the query.
+    candidate to a part of the query. Infinity stands for a distance from its limit on.
     """
 
     inside: FloatArray
     around: FloatArray
 
 
-def partial_distances(query: FloatArray, candidates: Sequence[FloatArray]) -> PartialDistances:
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Distances from these on do not matter. inside: of all candidates. around: (c,) of each."""
+
+    inside: float
+    around: FloatArray
+
+
+def partial_distances(
+    query: FloatArray, candidates: Sequence[FloatArray], limits: Limits | None = None
+) -> PartialDistances:
     """The distances of `query` (n, d) and `candidates`, each (m, d), in the same unit.
 
-    Computed in float32. Raises ValueError for an empty sequence, and DeadlineExceeded or
-    ClientLeft (app.deadline).
+    limits: None if all distances matter. Computed in float32. Raises ValueError for an empty
+    sequence, and DeadlineExceeded or ClientLeft (app.deadline).
     """
     whole = _thinned(query)
     candidates = [_thinned(one) for one in candidates]
     lengths = np.array([len(one) for one in candidates], dtype=np.int64)
     if not len(whole) or (len(lengths) and not lengths.min()):
         raise ValueError("cannot warp an empty sequence")
+    limits = limits or Limits(np.inf, np.full(len(lengths), np.inf))
     center = whole.mean(axis=0)  # differences of small numbers keep more digits
     whole = whole - center
-    inside, around = np.empty(len(lengths)), np.empty(len(lengths))
+    points = _with_midpoints(whole)
+    inside, around = np.full(len(lengths), np.inf), np.full(len(lengths), np.inf)
     for batch in batches(2 * lengths, len(whole)):
         own = [candidates[i] - center for i in batch]
-        rows = lengths[batch]
         # A path at the repeated last frame of a candidate is one that stays there.
-        table = _tables(whole, [_with_midpoints(one) for one in own])
-        inside[batch] = _cheapest(table, np.full(len(rows), len(whole)))
-        table = _tables(_with_midpoints(whole), own)
-        around[batch] = _cheapest(table.transpose(1, 0, 2), rows)
-    return PartialDistances(inside / len(whole), around / lengths)
+        table = _Table.of(whole, [_with_midpoints(one) for one in own])
+        near = np.flatnonzero(table.nearest(axis=1) < limits.inside)
+        inside[batch[near]] = table.cheapest_paths(near)
+        table = _Table.of(points, own)
+        near = np.flatnonzero(table.nearest(axis=0) < limits.around[batch])
+        around[batch[near]] = table.cheapest_paths(near, is_turned=True)
+    return PartialDistances(inside, around)
 
 
-def _tables(query: FloatArray, candidates: Sequence[FloatArray]) -> FloatArray:
-    """(n, m, c) the distances of query frames to those of each candidate, padded at the end."""
-    lengths = np.array([len(one) for one in candidates])
-    return side_by_side(costs(query, np.concatenate(candidates), lengths), lengths)
+@dataclass(frozen=True, slots=True)
+class _Table:
+    """The distances of n query points to the points of c candidates.
+
+    costs: (n, k), the candidates one after the other; lengths: (c,), which sum up to k.
+    """
+
+    costs: FloatArray
+    lengths: IntArray
+
+    @classmethod
+    def of(cls, query: FloatArray, candidates: Sequence[FloatArray]) -> _Table:
+        """query: (n, d); candidates: (m, d) each."""
+        lengths = np.array([len(one) for one in candidates])
+        return cls(costs(query, np.concatenate(candidates), lengths), lengths)
+
+    def nearest(self, axis: int) -> FloatArray:
+        """(c,) the mean distance of the points of one motion to the nearest ones of the other.
+
+        axis: 1 for the points of the query, 0 for those of the candidates.
+        """
+        firsts = np.cumsum(self.lengths) - self.lengths
+        if axis == 1:
+            return np.asarray(np.minimum.reduceat(self.costs, firsts, axis=1).mean(axis=0))
+        return np.asarray(np.add.reduceat(self.costs.min(axis=0), firsts) / self.lengths)
+
+    def cheapest_paths(self, chosen: IntArray, *, is_turned: bool = False) -> FloatArray:
+        """(k,) mean costs of the cheapest paths of the `chosen` (k,) candidates.
+
+        is_turned: whether the candidates are whole, and not the query.
+        """
+        if not len(chosen):
+            return np.zeros(0)
+        lengths = self.lengths[chosen]
+        columns = np.repeat(np.isin(np.arange(len(self.lengths)), chosen), self.lengths)
+        table = side_by_side(self.costs[:, columns], lengths)
+        if is_turned:
+            return np.asarray(_cheapest(table.transpose(1, 0, 2), lengths) / lengths)
+        rows = np.full(len(chosen), len(table))
+        return np.asarray(_cheapest(table, rows) / len(table))
 
 
 def _with_midpoints(sequence: FloatArray) -> FloatArray:

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.numerics.alignment import cost_tables, partial_dtw
-from app.numerics.alignment.partial_dtw import MAX_STEP, partial_distances
+from app.numerics.alignment.partial_dtw import MAX_STEP, Limits, partial_distances
 from app.numerics.arrays import FloatArray
 
 
@@ -52,6 +52,27 @@ def test_many_batches_give_what_one_gives(monkeypatch: pytest.MonkeyPatch) -> No
     in_batches = partial_distances(query, candidates)
     np.testing.assert_allclose(in_batches.inside, at_once.inside, rtol=1e-5)
     np.testing.assert_allclose(in_batches.around, at_once.around, rtol=1e-5)
+
+
+@given(
+    lengths=st.lists(st.integers(1, 30), max_size=9),
+    inside=st.floats(0.0, 3.0),
+    seed=st.integers(0, 999),
+)
+@settings(max_examples=40, deadline=None)
+def test_limits_change_no_distance_below_them(lengths: list[int], inside: float, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    query = rng.normal(size=(9, 3))
+    candidates = [rng.uniform(0, 2) * rng.normal(size=(m, 3)) for m in lengths]
+    around = rng.uniform(0, 3, size=len(lengths))
+    every = partial_distances(query, candidates)
+    limited = partial_distances(query, candidates, Limits(inside, around))
+    for got, full, limit in (
+        (limited.inside, every.inside, np.full(len(lengths), inside)),
+        (limited.around, every.around, around),
+    ):
+        assert got[full < limit].tolist() == full[full < limit].tolist()
+        assert (np.isinf(got) | (got == full)).all()
 
 
 def _curve(times: FloatArray) -> FloatArray:

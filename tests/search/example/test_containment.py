@@ -43,3 +43,17 @@ def test_tempo_and_crops_are_near_and_other_motions_far() -> None:
     assert max(found[name] for name in ("fast", "slow", "crop")) < CONTAINED / 2
     assert min(found[name] for name in ("wave", "rest")) > CONTAINED
     assert found["deleted"] == np.inf
+
+
+def test_a_limit_spares_only_distances_from_it_on() -> None:
+    walk = motion_of(walking())
+    motions = [walk, _part(walk, 20, walk.frames - 20), motion_of(waving())]
+    stored = {str(i): _described(motion) for i, motion in enumerate(motions)}
+
+    def load(ids: list[str], array: str) -> dict[str, np.ndarray]:
+        return {one: stored[one][array] for one in ids}
+
+    every = containment_distances(stored["1"], list(stored), load)
+    limited = containment_distances(stored["1"], list(stored), load, CONTAINED)
+    assert limited[:2].tolist() == every[:2].tolist()
+    assert limited[2] == np.inf > every[2] > CONTAINED
