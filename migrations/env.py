@@ -6,7 +6,11 @@ from typing import Any, Literal
 
 from alembic import context
 
-from app.store.database.tables import UtcDateTime, metadata
+from app.store.database import service_tables, tables
+from app.store.database.columns import UtcDateTime
+
+# Both modules add their tables to the same collection.
+(metadata,) = {tables.metadata, service_tables.metadata}
 
 
 def render_item(kind: str, item: Any, _context: Any) -> str | Literal[False]:

@@ -24,7 +24,7 @@ from sqlalchemy import ColumnElement, RowMapping, delete, insert, select
 from app.store.database.engine import Tx
 from app.store.database.ids import new_id, utc_now
 from app.store.database.paging import Page, Position, after, read_cursor, write_cursor
-from app.store.database.tables import api_keys, audit_log
+from app.store.database.service_tables import api_keys, audit_log
 from app.store.database.totals import Total, total_of
 
 NEWEST_FIRST = "-at"

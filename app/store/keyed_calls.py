@@ -21,7 +21,7 @@ from sqlalchemy import and_, bindparam, delete, insert, select, update
 from app.errors import AnswerLost, CallInProgress, CallOvertaken
 from app.store.database.engine import Tx
 from app.store.database.ids import new_id, utc_now
-from app.store.database.tables import keyed_calls
+from app.store.database.service_tables import keyed_calls
 from app.store.jobs import owners
 
 KEPT = timedelta(hours=24)

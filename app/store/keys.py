@@ -28,7 +28,7 @@ from app.errors import BadField, NotFound
 from app.kinedex_error import Place
 from app.store.database.engine import Tx
 from app.store.database.ids import utc_now
-from app.store.database.tables import api_keys
+from app.store.database.service_tables import api_keys
 from app.store.key_role import KeyRole
 
 PREFIX = "kx"

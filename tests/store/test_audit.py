@@ -6,7 +6,7 @@ from datetime import timedelta
 
 import pytest
 
-from app.errors import BadField
+from app.errors import PageNotFound
 from app.store import audit, keys
 from app.store.audit import AuditFilter, Call
 from app.store.database.ids import utc_now
@@ -61,7 +61,7 @@ def test_rows_are_filtered_and_paged_newest_first(store: Store) -> None:
         rest = audit.list_page(tx, ALL, limit=3, cursor=first.next)
         assert {row.key_name for row in first.items} == {"laptop"}
         assert audit.total(tx, ALL).count == 5
-        with pytest.raises(BadField):
+        with pytest.raises(PageNotFound):
             audit.list_page(tx, ALL, cursor="x")
     assert [row.action for row in rest.items] == ["action_1", "action_0"]
     assert rest.next is None

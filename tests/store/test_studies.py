@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.errors import AlreadyVoted, BadField, NotFound
+from app.errors import AlreadyVoted, NotFound, PageNotFound
 from app.store import studies
 from app.store.clips import repository as clips
 from app.store.store import Store
@@ -48,7 +48,7 @@ def test_pairs_are_listed_in_pages_newest_first(store: Store, pair: PairRecord) 
         cursor = page.next
     assert seen == [one.id for one in reversed(made)]
     assert cursor is None
-    with store.read() as tx, pytest.raises(BadField):
+    with store.read() as tx, pytest.raises(PageNotFound):
         studies.list_pairs(tx, cursor="nonsense")
 
 

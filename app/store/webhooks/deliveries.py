@@ -17,7 +17,7 @@ from sqlalchemy import RowMapping, and_, bindparam, delete, exists, insert, or_,
 
 from app.store.database.engine import Tx
 from app.store.database.ids import new_id, utc_now
-from app.store.database.tables import webhook_deliveries, webhooks
+from app.store.database.service_tables import webhook_deliveries, webhooks
 from app.store.webhooks.repository import drop_pending
 
 TAKEN_SECONDS = 60.0

@@ -12,7 +12,7 @@ from sqlalchemy import RowMapping, delete, func, insert, select, update
 from app.errors import WebhookNotFound
 from app.store.database.engine import Tx
 from app.store.database.ids import new_id, utc_now
-from app.store.database.tables import webhook_deliveries, webhooks
+from app.store.database.service_tables import webhook_deliveries, webhooks
 
 
 @dataclass(frozen=True, slots=True)

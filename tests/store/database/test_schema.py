@@ -16,9 +16,8 @@ from sqlalchemy import create_mock_engine, text
 from app.errors import DatabaseOutOfDate
 from app.store import models
 from app.store.clips import repository as clips
-from app.store.database import schema
+from app.store.database import schema, service_tables, tables
 from app.store.database.engine import Database
-from app.store.database.tables import metadata
 from app.store.jobs import import_files, imports, leases
 from app.store.jobs import repository as jobs
 from app.store.jobs.import_files import FileOutcome, ImportOutcome
@@ -50,6 +49,7 @@ def test_tables_can_be_made_on_postgresql() -> None:
         "postgresql+psycopg://",
         lambda sql, *_, **__: statements.append(str(sql.compile(dialect=engine.dialect))),
     )
+    (metadata,) = {tables.metadata, service_tables.metadata}
     metadata.create_all(engine, checkfirst=False)
     assert sum("CREATE TABLE" in statement for statement in statements) == len(metadata.tables)
 

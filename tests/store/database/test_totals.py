@@ -6,7 +6,7 @@ import pytest
 from sqlalchemy import insert, select
 
 from app.store.database.ids import new_id, share_before, utc_now
-from app.store.database.tables import api_keys
+from app.store.database.service_tables import api_keys
 from app.store.database.totals import total_of
 from app.store.store import Store
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.errors import BadField, JobNotFound
+from app.errors import JobNotFound, PageNotFound
 from app.store.jobs import leases
 from app.store.jobs import repository as jobs
 from app.store.jobs.record import JobKind, JobState
@@ -48,6 +48,6 @@ def test_jobs_are_listed_newest_first_page_by_page(store: Store, add_job: AddJob
             if (cursor := page.next) is None:
                 break
         assert jobs.list_jobs(tx, state=JobState.FAILED).items == ()
-        with pytest.raises(BadField):
+        with pytest.raises(PageNotFound):
             jobs.list_jobs(tx, cursor="?")
     assert seen == ids[::-1]
