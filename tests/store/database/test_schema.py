@@ -26,11 +26,13 @@ from app.store.jobs.record import JobKind, NewJob
 from app.store.store import Store
 from tests.store.conftest import AddClip
 
+(METADATA,) = {tables.metadata, service_tables.metadata}
+
 
 def test_migrations_and_tables_agree(store: Store) -> None:
     with store.read() as tx:
         context = MigrationContext.configure(tx, opts={"compare_type": True})
-        assert compare_metadata(context, metadata) == []
+        assert compare_metadata(context, METADATA) == []
 
 
 def test_the_revision_that_is_needed_is_alembics_newest(store: Store, database_url: str) -> None:
@@ -49,9 +51,8 @@ def test_tables_can_be_made_on_postgresql() -> None:
         "postgresql+psycopg://",
         lambda sql, *_, **__: statements.append(str(sql.compile(dialect=engine.dialect))),
     )
-    (metadata,) = {tables.metadata, service_tables.metadata}
-    metadata.create_all(engine, checkfirst=False)
-    assert sum("CREATE TABLE" in statement for statement in statements) == len(metadata.tables)
+    METADATA.create_all(engine, checkfirst=False)
+    assert sum("CREATE TABLE" in statement for statement in statements) == len(METADATA.tables)
 
 
 def test_an_empty_database_is_prepared_and_prepared_again(tmp_path: Path) -> None:
