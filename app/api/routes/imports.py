@@ -25,7 +25,8 @@ Labels come from a row of `manifest.csv`, else from the pattern `labels`, else f
 the form. A manifest may be in any folder; its paths are relative to that folder. Its columns:
 
 - `path` is the only column that is needed. `name`, `person`, `task`, `license` and `source` are
-  labels. `words` are separated by spaces, and a phrase has underscores (`left_leg`).
+  labels. `words` are separated by spaces, and a phrase has underscores (`left_leg`). `captions`
+  are sentences, separated by `|`.
 - `fps` (or `frame_rate`), `unit` and `up_axis` say what a file does not say, or says wrongly.
 - `audio` is the path of a recording (WAV, FLAC, OGG or MP3), and `audio_offset` the time in the
   motion at which it begins, in seconds. `tempo` and `beats` replace the beats of the recording.

@@ -71,7 +71,7 @@ def _print(found: WordEvaluation, examples: Sequence[WordExample]) -> None:
     _print_figures("held_out", found.figures)
     typer.echo("\nIn-sample, as the paper judged retrieval (section 3):\n")
     _print_figures("in_sample", found.in_sample)
-    typer.echo(
+    print_text(
         "\nTakano's figures (618 motions, 253 words) and yours: F and MAP of label sets in-sample, "
         "top-3 words with one recording left out:\n"
     )

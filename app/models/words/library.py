@@ -39,6 +39,9 @@ from app.models.words.vocabulary import WordVocabulary
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm.model import GaussianHMM
 
+MAX_CHOOSING = 1000
+"""The largest number of labeled clips that choose the dimensions of the mode "cca"."""
+
 Arrays = dict[str, np.ndarray[Any, Any]]
 _Part = WordModel | WordCalibration | SymbolSpace | CorrelatedWords
 
@@ -231,14 +234,18 @@ def fit_library_words(
     dimensions = possible_dimensions(CANDIDATES, len(symbols))
     spaces = dict(zip(dimensions, fit_symbol_spaces(symbols, dimensions, seed=seed), strict=True))
     distances = symbol_distances(symbols, spaces[DIMENSIONS].landmarks)
-    points = {count: space.place_at(distances) for count, space in spaces.items()}
     chosen, losses, cca, printed = DIMENSIONS, {}, None, None
     if len(labeled) >= MIN_CLIPS:
-        own_points = {count: rows[labeled] for count, rows in points.items()}
-        losses = dimension_losses(own_points, truth, own, seed=seed)
+        # to place clips takes most of the time, so some of them choose
+        some = np.sort(np.random.RandomState(seed).permutation(len(labeled))[:MAX_CHOOSING])
+        judged = {c: space.place_at(distances[labeled[some]]) for c, space in spaces.items()}
+        losses = dimension_losses(judged, truth[some], [own[row] for row in some], seed=seed)
         chosen = chosen_dimensions(losses)
-        cca = fit_correlated_words(own_points[chosen], truth, own, CCA, seed=seed)
-        printed = fit_correlated_words(own_points[DIMENSIONS], truth, own, PRINTED, seed=seed)
+    points = {count: spaces[count].place_at(distances) for count in {DIMENSIONS, chosen}}
+    if len(labeled) >= MIN_CLIPS:
+        cca = fit_correlated_words(points[chosen][labeled], truth, own, CCA, seed=seed)
+        few = points[DIMENSIONS][labeled]
+        printed = fit_correlated_words(few, truth, own, PRINTED, seed=seed)
     words = LibraryWords(
         vocabulary, model, calibration, spaces[DIMENSIONS], spaces[chosen], cca, printed, losses
     )

@@ -155,14 +155,15 @@ def word_figures(training: TrainingSet) -> Meta:
         return {"reason": reason.detail}
     shown = asdict(found)
     # curves and figures of single words are long; `kinedex evaluate words` shows them
-    del shown["by_word"]
+    del shown["by_word"], shown["left_out"]
     for name in ("figures", "in_sample"):
         shown[name] = [{k: v for k, v in row.items() if k != "precision"} for row in shown[name]]
     correlations = {
         kind: {str(number): value for number, value in enumerate(values, 1)}
         for kind, values in found.correlations.items()
     }
-    return shown | {"correlations": correlations}
+    losses = {str(count): loss for count, loss in found.losses.items()}
+    return shown | {"correlations": correlations, "losses": losses}
 
 
 def _fit_recognizer(training: TrainingSet, _: Before) -> Fit:

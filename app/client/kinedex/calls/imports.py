@@ -33,6 +33,7 @@ def start_import(
 
     - `path` is the only column that is needed. `name`, `person`, `task`, `license` and `source`
     are labels. `words` are separated by spaces, and a phrase has underscores (`left_leg`).
+    `captions` are sentences, separated by `|`.
     - `fps` (or `frame_rate`), `unit` and `up_axis` say what a file does not say, or says
     wrongly.
     - `audio` is the path of a recording (WAV, FLAC, OGG or MP3), and `audio_offset` the time in

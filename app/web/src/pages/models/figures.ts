@@ -28,7 +28,8 @@ const METHODS: Readonly<Record<string, string>> = {
   cca: "Correlated space (Takano)",
   "cca-score": "Correlated space, by score",
   "cca-distance": "Correlated space, by distance",
-  "cca-pinv": "Correlated space, as printed",
+  "cca-10": "Correlated space, 10 dimensions",
+  printed: "Correlated space, as printed",
   "cca-symbol": "Correlated space, symbol to symbol",
 };
 
