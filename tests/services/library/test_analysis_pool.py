@@ -168,7 +168,6 @@ def test_children_keep_compiled_code_in_the_folder_of_the_pool(
     monkeypatch.delenv("NUMBA_CACHE_DIR")
     analysis_pool._prepare(100, "info", str(tmp_path / "numba"))
     assert os.environ["NUMBA_CACHE_DIR"] == str(tmp_path / "numba")
-    analysis_pool._prepare(
-        100, "info", str(tmp_path / "other")
-    )  # what the operator says comes first
+    # a folder that the operator names comes first
+    analysis_pool._prepare(100, "info", str(tmp_path / "other"))
     assert os.environ["NUMBA_CACHE_DIR"] == str(tmp_path / "numba")
