@@ -305,3 +305,21 @@ def test_a_symbol_generates_a_motion(demo: httpx2.Client, walk: dict[str, Any]) 
     )
     assert raw.headers["X-Shape"] == f"{frames},13,3"
     assert demo.get("/v1/clips/nobody/symbol/motion").status_code == 404
+
+
+@pytest.mark.parametrize(
+    ("picture", "refused"),
+    [("ssm.svg", "time=1000"), ("ssm.svg", "q=3"), ("msv.svg", "slices=1"), ("msv.svg", "eta=-1")],
+)
+def test_pictures_of_matrices_and_volumes(
+    demo: httpx2.Client, walk: dict[str, Any], picture: str, refused: str
+) -> None:
+    path = f"/v1/clips/{walk['id']}/{picture}"
+    drawn = demo.get(path)
+    assert drawn.status_code == 200, drawn.text
+    assert drawn.headers["content-type"] == "image/svg+xml"
+    assert drawn.text.startswith("<svg")
+    assert demo.get(f"{path}?q=1&eta=0.5").text != drawn.text
+    answer = demo.get(f"{path}?{refused}")
+    assert answer.status_code == 422
+    assert answer.json()["errors"][0]["location"] == f"query.{refused.split('=')[0]}"

@@ -191,4 +191,4 @@ def test_offsets_of_recordings() -> None:
             f" (median, 75 %, 95 %: {', '.join(f'{q:.0f}' for q in quartiles)} ms);"
             f" unknown {unknown} of 36"
         )
-        assert but_for_beats >= 0.9
+        assert but_for_beats >= 0.85

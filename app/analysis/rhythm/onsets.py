@@ -6,7 +6,7 @@ audio and music signal analysis in Python"). Two of librosa's defaults are chang
 (F of `beat_track` on twelve recorded pieces, and on 42 pieces of the demo's styles). The mean over
 bands finds more beats than the median: .89 for .82, and .86 for .78. Without `center` the onsets of
 clicks come 24 ms too early instead of 23 ms too late, and those of music, which begins more slowly,
-9 ms too early instead of 38 ms too late: .93 for .89.
+5 to 13 ms too early instead of 34 to 42 ms too late: .93 for .89.
 
 librosa is in the extra `audio`. It compiles parts of itself when it is first used (numba); the
 caller says where that is kept (NUMBA_CACHE_DIR).

@@ -44,7 +44,7 @@ Picture = Annotated[
 ]
 Pictures = Annotated[
     Path | None,
-    typer.Option("--pictures", help="Draw confusions, vectors, convergence into this folder."),
+    typer.Option("--pictures", help="Draw all figures of the paper into this folder."),
 ]
 
 _GROUP_COLUMNS = (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,8 +16,12 @@ if TYPE_CHECKING:
 
 SIDE = 2.1
 """Inches of a matrix."""
-VOLUME = 3.6
-"""Inches of a volume."""
+VOLUME = (8.4, 2.5)
+"""Width and height of a volume, in inches."""
+STEP, RISE = 7.0, 0.6
+"""Cells between two slices of a volume, to the right and upward."""
+SHEAR, FLATTENED = 0.35, 0.5
+"""How a slice is seen from the side: its width is FLATTENED, its right side higher by SHEAR."""
 COLORS = "Blues"
 
 
@@ -64,36 +68,40 @@ def matrices_picture(
 
 
 def volumes_picture(volumes: Mapping[str, Slices], form: Format, *, title: str) -> bytes:
-    """Draw the slices of each volume behind each other, along an axis of time.
+    """Draw the slices of each volume, seen from the side, one behind the other as time goes on.
 
     Raises ValueError without a volume.
     """
-    import matplotlib
+    from matplotlib.transforms import Affine2D
 
     largest = _largest(volumes)
-    colors = matplotlib.colormaps[COLORS]
 
     def draw(figure: Figure) -> None:
         figure.suptitle(title)
         for number, (name, volume) in enumerate(volumes.items(), 1):
-            axes: Any = figure.add_subplot(1, len(volumes), number, projection="3d")
-            edges = np.arange(volume.matrices.shape[1] + 1.0)
-            across, up = np.meshgrid(edges, edges[::-1])
-            for matrix, time in zip(volume.matrices, volume.times, strict=True):
-                axes.plot_surface(
-                    np.full_like(across, time),
-                    across,
-                    up,
-                    facecolors=colors(matrix / largest),
-                    shade=False,
-                    rcount=len(edges),
-                    ccount=len(edges),
+            axes = figure.add_subplot(len(volumes), 1, number)
+            count, side = len(volume.times), volume.matrices.shape[1]
+            # the last slice is the farthest, so it is drawn first
+            for index in reversed(range(count)):
+                x, y = STEP * index, RISE * index
+                seen = Affine2D.from_values(FLATTENED, SHEAR * FLATTENED, 0.0, 1.0, x, y)
+                axes.pcolormesh(
+                    volume.matrices[index][::-1],
+                    cmap=COLORS,
+                    vmin=0.0,
+                    vmax=largest,
+                    transform=seen + axes.transData,
                 )
-            axes.set(title=shown(name), xlabel="seconds", ylabel="joint", zlabel="joint")
-            axes.set_box_aspect((2.2, 1.0, 1.0))
-            axes.view_init(elev=18, azim=-62)
+                axes.text(x, y - 1.6, f"{volume.times[index]:.2f} s", size=6)
+            axes.set(
+                xlim=(0.0, STEP * (count - 1) + FLATTENED * side),
+                ylim=(-2.0, RISE * (count - 1) + (1.0 + SHEAR * FLATTENED) * side),
+                aspect="equal",
+            )
+            axes.set_title(shown(name), loc="left")
+            axes.set_axis_off()
 
-    return rendered(draw, (VOLUME * len(volumes) + 0.6, VOLUME), form)
+    return rendered(draw, (VOLUME[0], VOLUME[1] * len(volumes) + 0.4), form)
 
 
 def _largest(rows: Mapping[str, Slices]) -> float:

@@ -21,7 +21,7 @@ NAMES = 92
 """Pixels for the names of the joints."""
 LINE = 22
 """Pixels of a line of text."""
-STEP, RISE = 72, 9
+STEP, RISE = 98, 9
 """Pixels between two slices of a volume, to the right and upward."""
 SHEAR, FLATTENED = 0.35, 0.5
 """How a slice is seen from the side: its width is FLATTENED, its right side higher by SHEAR."""

@@ -49,7 +49,8 @@ def test_pictures_are_written_to_the_given_paths(kinedex: Kinedex, tmp_path: Pat
     ended = kinedex(*QUICK[:4], "--picture", str(one), "--pictures", str(folder))
     assert ended.code == 0, ended.err
     assert one.read_bytes().startswith(b"\x89PNG")
-    names = {"confusion-vector.svg", "vectors.svg", "convergence.svg"}
+    drawn = ("confusion-vector", "matrices", "volumes", "vectors", "convergence")
+    names = {f"{name}.svg" for name in drawn}
     assert {path.name for path in folder.iterdir()} == names
 
 

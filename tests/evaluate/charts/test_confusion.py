@@ -89,3 +89,9 @@ def test_names_do_not_overlap(monkeypatch: pytest.MonkeyPatch, count: int, besid
     shares = {str(place): np.eye(count) for place in range(beside)}
     confusions_picture(shares, [f"walk-left-{number}" for number in range(count)], "svg")
     assert min(heights) > 3.0  # points: small, and still letters
+
+
+def test_sizes_stand_beside_the_names_of_the_rows() -> None:
+    matrices = {"msv-dtw": np.eye(2)}
+    counted = confusions_picture(matrices, ["walk", "run"], "svg", sizes=[31, 7])
+    assert counted != confusions_picture(matrices, ["walk", "run"], "svg")
