@@ -83,18 +83,19 @@ TOLERANCE = 0.01
 """A single change may be better than the chosen method by at most this."""
 
 CHANGES: tuple[tuple[ModuleType, str, tuple[Any, ...]], ...] = (
-    (fusion, "DTW_WEIGHT", (0.0, 0.5, 1.0)),
+    (fusion, "DTW_WEIGHT", (0.25, 0.5, 1.0)),
     (fusion, "DETOUR", (0.0, 0.5, 2.0)),
     (fusion, "NEIGHBORS", (0.5, 1.0)),
+    (fusion, "ALIKE", (0.0, 0.5, 2.0)),
     (fusion, "SHORTLIST", (100, 200)),
     (diffusion, "REACH", (1.0, 3.0)),
-    (motion_vector, "SLOW", (0.5, 2.0)),
-    (motion_vector, "PLACE_WEIGHT", (0.5, 1.0)),
+    (motion_vector, "SLOW_SECONDS", (0.5, 2.0)),
+    (motion_vector, "POSITION_WEIGHT", (0.5, 1.0)),
     (motion_vector, "MOVEMENT_WEIGHT", (0.0, 2.0)),
-    (motion_vector, "WANDERING_WEIGHT", (0.0, 1.25)),
+    (motion_vector, "DRIFT_WEIGHT", (0.0, 1.25)),
     (motion_vector, "TRAVEL_WEIGHTS", ((1.0, 1.0, 1.0), (3.0, 1.0, 1.0))),
     (motion_vector, "SWAY_WEIGHT", (0.0,)),
-    (motion_vector, "TURNING", (0.1, 1.0)),
+    (motion_vector, "TURN_SCALE", (0.1, 1.0)),
     (motion_vector, "COVARIANCE_SCALE", (0.0, 0.1)),
 )
 
