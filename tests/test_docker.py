@@ -59,12 +59,6 @@ def _stages() -> list[list[Step]]:
     return stages
 
 
-def _base_image() -> str:
-    """The image that both stages begin with, unless a build names another."""
-    (image,) = re.findall(r"^ARG PYTHON_IMAGE=(\S+)$", DOCKERFILE.read_text(), re.MULTILINE)
-    return str(image)
-
-
 BUILD, FINAL = _stages()
 
 
@@ -97,17 +91,6 @@ def _is_ignored(path: str) -> bool:
         if re.fullmatch(f"{pattern}(?:/.*)?", path):
             ignored = not line.startswith("!")
     return ignored
-
-
-def test_two_stages_of_one_python() -> None:
-    first, second = BUILD[0].rest.split(), FINAL[0].rest.split()
-    assert first[0] == second[0]
-    needed = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["requires-python"]
-    assert needed == ">=3.11"
-    assert second[0] == "${PYTHON_IMAGE}"
-    assert re.fullmatch(r"python:3\.1[1-9]-slim-\w+", _base_image())
-    (copied,) = [step.rest for step in FINAL if step.word == "COPY"]
-    assert copied.startswith(f"--from={first[-1]} ")
 
 
 def test_what_is_copied_exists_and_reaches_the_build() -> None:
@@ -275,7 +258,6 @@ def test_the_image_has_labels_and_the_version_of_the_package() -> None:
     assert arguments["VERSION"] == PROJECT["version"]
     given = SERVICES["api"]["build"]["args"]
     assert set(given) == {"PYTHON_IMAGE", *arguments}
-    assert _VARIABLE.sub(r"\2", given["PYTHON_IMAGE"]) == _base_image()
     assert SERVICES["api"]["image"] == f"kinedex:${{TAG:-{PROJECT['version']}}}"
 
 

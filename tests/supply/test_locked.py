@@ -6,7 +6,26 @@ import re
 
 import pytest
 
-from tests.test_docker import BUILD, FINAL, PROJECT, ROOT, _only
+from tests.test_docker import BUILD, DOCKERFILE, FINAL, PROJECT, ROOT, SERVICES, _only
+
+
+def _base_image() -> str:
+    """The image that both stages begin with, unless a build names another."""
+    (image,) = re.findall(r"^ARG PYTHON_IMAGE=(\S+)$", DOCKERFILE.read_text(), re.MULTILINE)
+    return str(image)
+
+
+def test_two_stages_of_one_python() -> None:
+    first, second = BUILD[0].rest.split(), FINAL[0].rest.split()
+    assert first[0] == second[0]
+    needed = PROJECT["requires-python"]
+    assert needed == ">=3.11"
+    assert second[0] == "${PYTHON_IMAGE}"
+    assert re.fullmatch(r"python:3\.1[1-9]-slim-\w+", _base_image())
+    given = SERVICES["api"]["build"]["args"]["PYTHON_IMAGE"]
+    assert given == f"${{PYTHON_IMAGE:-{_base_image()}}}"
+    (copied,) = [step.rest for step in FINAL if step.word == "COPY"]
+    assert copied.startswith(f"--from={first[-1]} ")
 
 
 def _locked(name: str) -> dict[str, tuple[str, int]]:
