@@ -22,10 +22,16 @@ ifneq ($(OWN_NODE),yes)
 endif
 NPM := cd $(WEB) && PATH="$(NODE_PATH)$$PATH" npm
 
-.PHONY: help install demo serve test test-all bench lint picture screenshots client
+AUDIT := $(VENV)/audit
+AUDIT_STAMP := $(AUDIT)/.installed
+UV := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-header \
+  --no-annotate --constraint docker/constraints.txt
+
+.PHONY: help install demo serve test test-all bench lint picture screenshots client audit licenses lock
 
 help:
 	@echo "make demo | serve | test | test-all | bench | lint | install | picture | screenshots | client"
+	@echo "     audit | licenses | lock"
 
 install: $(STAMP) $(PAGES)
 
@@ -110,3 +116,24 @@ client: install
 # Every page in both themes at three widths, for people to look at: build/screenshots/.
 screenshots: install
 	$(BIN)/python -m tests.web.screenshots
+
+# Asks the public lists of vulnerabilities. Without a network it says so, and passes.
+audit: install $(AUDIT_STAMP)
+	@PATH="$(NODE_PATH)$$PATH" $(BIN)/python -m tests.supply.audit $(AUDIT)/bin/pip-audit npm
+
+$(AUDIT_STAMP): docker/tools.txt | $(STAMP)
+	@mkdir -p $(AUDIT)
+	@$(PYTHON) -m venv --without-pip $(AUDIT)
+	@$(PYTHON) -m pip --python $(AUDIT)/bin/python install --quiet --disable-pip-version-check \
+	  --require-hashes --only-binary :all: -r docker/tools.txt && touch $@ || \
+	  echo "audit: its tools cannot be installed"
+
+# The licenses of everything that runs; fails if one of them does not fit Apache-2.0.
+licenses: install
+	@$(BIN)/python -m tests.supply.licenses
+
+# What the image is built from, with the SHA-256 of every package: after each change of a version.
+lock: install
+	$(PYTHON) -m pip --python $(BIN)/python install --quiet --disable-pip-version-check uv
+	$(UV) pyproject.toml --extra audio --extra plots --extra words -o docker/requirements.txt
+	printf 'setuptools\nnodejs-wheel-binaries\npip-audit\ncyclonedx-bom\n' | $(UV) - -o docker/tools.txt

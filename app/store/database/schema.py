@@ -151,5 +151,5 @@ def _state(tx: Tx) -> SchemaState:
     tables = inspect(tx).get_table_names()
     current = None
     if REVISION_TABLE in tables:
-        current = tx.execute(text(f"SELECT version_num FROM {REVISION_TABLE}")).scalar()  # noqa: S608
+        current = tx.execute(text(f"SELECT version_num FROM {REVISION_TABLE}")).scalar()  # noqa: S608 - a constant
     return SchemaState(current, max(_revisions()), is_empty=not tables)

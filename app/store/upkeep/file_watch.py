@@ -17,7 +17,8 @@ from dataclasses import dataclass
 
 from sqlalchemy.exc import SQLAlchemyError
 
-from app.errors import FileDamaged, NotFound, StorageError
+from app.errors import FileDamaged, NotFound
+from app.kinedex_error import KinedexError
 from app.store.files.hash_check import HashChecker
 from app.store.jobs import references
 from app.store.store import Store
@@ -89,7 +90,7 @@ class FileWatch:
         pause = 0.0
         while not self._stop.wait(max(POLL_S, min(pause, MAX_PAUSE_S))):
             began = time.monotonic()
-            with suppress(StorageError, OSError, SQLAlchemyError):  # `Health` reports these
+            with suppress(KinedexError, OSError, SQLAlchemyError):  # `Health` reports these
                 self.step()
             pause = PAUSE_PER_WORK * (time.monotonic() - began)
 

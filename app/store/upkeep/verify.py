@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from sqlalchemy import select
 
-from app.errors import DatabaseDamaged, FileDamaged, NotFound
+from app.errors import BadField, DatabaseDamaged, FileDamaged, NotFound
 from app.store.clips.record import ClipState
 from app.store.database.blobs import from_blob_if_whole
 from app.store.database.tables import clip_arrays, clips, model_arrays
@@ -96,7 +96,7 @@ def _hash_all(
             checked.check(store.files.path(sha256))
         except (NotFound, FileNotFoundError):
             missing.append(sha256)
-        except (FileDamaged, OSError):
+        except (FileDamaged, BadField, OSError):  # BadField: a name that is no SHA-256
             damaged.append(sha256)
         if progress is not None:
             progress(done, len(names))
