@@ -42,6 +42,13 @@ def test_a_row_has_the_values_of_all_columns() -> None:
     assert (empty.values.labels, empty.values.hints) == (ClipLabels("b"), AnalysisHints())
 
 
+def test_captions_are_separated_by_bars_or_lines() -> None:
+    table = 'path,captions\na.bvh,"a walk | he turns\na walk"\nb.bvh,\n'
+    manifest = _read(table.encode())
+    assert manifest.row("a.bvh").values.labels.captions == ("a walk", "he turns")
+    assert manifest.row("b.bvh").values.labels.captions == ()
+
+
 @pytest.mark.parametrize("separator", [";", "\t"])
 def test_separators_of_all_spreadsheet_programs_are_read(separator: str) -> None:
     table = "path,person,words\na.bvh,ada,walk slow\n".replace(",", separator)

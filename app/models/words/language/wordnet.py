@@ -26,6 +26,8 @@ from typing import Any, Self
 Related = dict[str, dict[str, float]]
 """Maps a foreign word to words of the library and their likeness."""
 
+MEANINGS_VERSION = 2
+"""Raise this number if the likenesses change. Words are then looked up again."""
 SAME_SYNSET, KIND, BROADER, KIND_OF_KIND, SIMILAR = 0.85, 0.65, 0.6, 0.5, 0.6
 USUAL_SENSES = 4
 """Number of senses of a library's word for each part of speech; rarer senses give wrong results
@@ -78,11 +80,14 @@ class Meanings:
 
     def to_meta(self) -> dict[str, Any]:
         """JSON-able metadata for `from_meta`."""
-        return {"looked_up": list(self.looked_up), "related": self.related}
+        looked_up = list(self.looked_up)
+        return {"version": MEANINGS_VERSION, "looked_up": looked_up, "related": self.related}
 
     @classmethod
     def from_meta(cls, meta: Mapping[str, Any]) -> Self:
-        """The meanings from the result of `to_meta`; none if `meta` is empty."""
+        """The meanings from the result of `to_meta`; none if another version looked them up."""
+        if meta.get("version") != MEANINGS_VERSION:
+            return cls()
         return cls(tuple(meta.get("looked_up", ())), dict(meta.get("related", {})))
 
 

@@ -57,6 +57,7 @@ def test_words_that_a_library_no_longer_has_are_dropped() -> None:
     assert after == Meanings(("run",), {"canter": {"run": 0.6}})
     assert Meanings.from_meta(after.to_meta()) == after
     assert Meanings.from_meta({}) == Meanings()
+    assert Meanings.from_meta({**after.to_meta(), "version": 1}) == Meanings()
 
 
 @pytest.mark.parametrize("word", ["falling", "take", "shower", "box_office", "shiver"])
