@@ -32,12 +32,11 @@ MIN_CLIPS = 20
 MIN_BELIEF = 1e-9
 """Smallest belief that a clip is known. So the candidates of a surely new clip stay in order."""
 
-TAIL = 0.02
-"""Share of the known and of the new clips that is ignored for the gap between them."""
+TAIL = 0.05
+"""Share of the known and of the new clips beyond which the gap between them is measured."""
 
-WIDE_GAP = 6.0
-"""If the gap is at least this wide, in interquartile ranges of the known clips, the threshold is
-the middle of the gap."""
+MAX_FALSE_ACCEPTANCE = 0.1
+"""Largest share of new held-out clips that the chosen threshold calls known."""
 
 CURVE_POINTS = 50
 """Points of the curve of false acceptance against false rejection."""
@@ -142,9 +141,7 @@ def fit_calibration(
     if len(judged) < MIN_CLIPS and simulated is not None:
         judged = scaled = simulated
     if min(len(judged), len(new)) >= MIN_CLIPS:
-        chosen = _between_medians(judged, new)
-        if judged is not simulated:
-            chosen = _in_the_gap(chosen, judged, new)
+        chosen = _between_tails(judged, new, simulated=judged is simulated)
     else:
         judged = scaled = novelty[known]
         chosen = _threshold(judged, new)
@@ -194,27 +191,25 @@ def _threshold(known: FloatArray, new: FloatArray) -> float:
     return float(np.median(cuts[best]))  # if they separate cleanly, the middle of the gap
 
 
+def _between_tails(known: FloatArray, new: FloatArray, *, simulated: bool) -> float:
+    """The middle between the highest known and the lowest new clips, less the TAIL of each.
+
+    If they overlap, at most MAX_FALSE_ACCEPTANCE of the new clips are called known: to name the
+    wrong person is worse than to name none. If there is a gap above simulated takes, the threshold
+    is near to these: the gap is too wide, since real takes are not as alike.
+    """
+    highest, lowest = float(np.quantile(known, 1 - TAIL)), float(np.quantile(new, TAIL))
+    if simulated and highest < lowest:
+        return _between_medians(known, new)
+    return min((highest + lowest) / 2, float(np.quantile(new, MAX_FALSE_ACCEPTANCE)))
+
+
 def _between_medians(known: FloatArray, new: FloatArray) -> float:
     """The novelty that is equally far from the medians of the known and of the new clips, each
-    distance in interquartile ranges of its kind.
-
-    Unlike the threshold with the least errors, it does not depend on a few clips at the border.
-    Unlike a midpoint of means, it does not depend on one task that is far from all others.
-    """
+    distance in interquartile ranges of its kind."""
     medians = np.array([float(np.median(part)) for part in (known, new)])
     ranges = np.array([_range(part) for part in (known, new)])
     return float((medians * ranges[::-1]).sum() / ranges.sum())
-
-
-def _in_the_gap(threshold: float, known: FloatArray, new: FloatArray) -> float:
-    """`threshold` moved toward the middle of the gap between known and new clips.
-
-    A wider gap moves it more: a clip in the gap, such as a known task by a new person, is more
-    likely to be known.
-    """
-    highest, lowest = float(np.quantile(known, 1 - TAIL)), float(np.quantile(new, TAIL))
-    share = (lowest - highest) / (WIDE_GAP * _range(known))
-    return threshold + min(max(share, 0.0), 1.0) * max((lowest + highest) / 2 - threshold, 0.0)
 
 
 def _range(part: FloatArray) -> float:

@@ -8,8 +8,14 @@ from typing import NamedTuple
 import numpy as np
 
 from app.models.cells import Cells, find_cells
-from app.models.holding_out import MAX_PROBES, HeldOut, rounds
-from app.models.recognition.calibration import NEW, Calibration, fit_calibration
+from app.models.holding_out import (
+    MAX_PROBES,
+    HeldOut,
+    rounds,
+    rounds_by_distance,
+    rounds_of_strangers,
+)
+from app.models.recognition.calibration import MIN_CLIPS, NEW, Calibration, fit_calibration
 from app.models.recognition.copies import CopiedClips
 from app.models.recognition.hypotheses import Hypotheses, fit_hypotheses
 from app.models.recognition.reach import allowance, nearest_cells, reach_of
@@ -58,21 +64,34 @@ def calibrations(
 ) -> tuple[Calibration, Calibration]:
     """The calibrations for persons and for tasks.
 
-    They come from rounds that hold out clips, persons and tasks, and from simulated takes of the
-    `views` of all clips. If clips are held out, a light copy of each counts like the clip.
+    They come from rounds that hold out clips, persons, tasks, and both of these at once, and from
+    simulated takes of the `views` of all clips. If clips are held out, a light copy of each counts
+    like the clip. If there are enough takes that are far apart, only these say how novel a later
+    take of a known pair is: a take between two learned ones is more like them.
     """
     names = [
         tuple(sorted({label for label in labels if label}))
         for labels in (clips.persons, clips.tasks)
     ]
     of_persons, of_tasks = [], []
-    for kind, train, probe in rounds(clips.persons, clips.tasks, clips.groups):
+    labels = clips.persons, clips.tasks
+    far = list(rounds_by_distance(*labels, clips.groups))
+    enough = sum(len(probe) for _, _, probe in far) >= MIN_CLIPS
+    for kind, train, probe in (
+        *rounds(*labels, clips.groups),
+        *rounds_of_strangers(*labels),
+        *(far if enough else ()),
+    ):
         judge = _Judge(clips, train, persons_by_both)
         asked = [(probe, clips.points.of(probe))]
-        if kind is HeldOut.CLIPS and clips.copied:
+        if kind in (HeldOut.CLIPS, HeldOut.FAR) and clips.copied:
             asked.append(clips.copied.one_each(probe))
         for index, points in asked:
             person, task = judge.results(index, points, names)
+            if enough and kind is HeldOut.CLIPS:
+                person, task = (
+                    one._replace(seen=np.zeros_like(one.seen)) for one in (person, task)
+                )
             # rounds that hold out tasks calibrate only the tasks
             if kind is not HeldOut.TASKS:
                 of_persons.append(person)

@@ -5,7 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.models.recognition.calibration import NEW, fit_calibration, softmax
+from app.models.recognition.calibration import (
+    MAX_FALSE_ACCEPTANCE,
+    NEW,
+    fit_calibration,
+    softmax,
+)
 
 NONE = np.zeros((0, 2)), np.zeros(0), np.zeros(0, dtype=int)
 
@@ -99,6 +104,14 @@ def test_known_clips_that_were_not_seen_in_training_do_not_move_the_threshold() 
     assert fit_calibration(evidence, novelty, truth).threshold > 1.0
     few = fit_calibration(evidence[50:], novelty[50:], truth[50:], seen[50:])
     assert few.threshold == fit_calibration(evidence[50:], novelty[50:], truth[50:]).threshold
+
+
+def test_if_known_and_new_overlap_few_new_ones_are_called_known() -> None:
+    rng = np.random.default_rng(6)
+    novelty = np.concatenate([rng.normal(-6, 20, 500), rng.normal(0, 10, 500)])
+    truth, seen = np.repeat([0, NEW], 500), np.repeat([True, False], 500)
+    found = fit_calibration(np.zeros((1000, 1)), novelty, truth, seen)
+    assert found.error_rates()[0] == pytest.approx(MAX_FALSE_ACCEPTANCE, abs=0.003)
 
 
 @pytest.mark.parametrize("far", [50.0, 1000.0, 1e6])

@@ -1,14 +1,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import permutations
 
 import numpy as np
 import pytest
 from scipy.stats import multivariate_normal, multivariate_t
 
 from app.models.cells import cell_means, find_cells
-from app.models.recognition.hypotheses import TAKES_FREEDOM, Hypotheses, fit_hypotheses, shrunk
+from app.models.recognition.hypotheses import TAKES_FREEDOM, Hypotheses, fit_hypotheses
 from app.models.recognition.kinds import Disturbed, Kind
 
 
@@ -22,20 +21,55 @@ def of_kind(record: Hypotheses, kind: Kind) -> tuple[np.ndarray, np.ndarray]:
 
 def test_new_persons_differ_from_each_person_as_two_persons_do() -> None:
     rng = np.random.default_rng(0)
-    who, what = zip(
-        *[(p, t) for p in "abcd" for t in "xyz" if (p, t) != ("d", "z")] * 2, strict=True
+    who, what = zip(*[(p, t) for p in range(40) for t in ("calm", "wild")], strict=True)
+    points = rng.standard_normal((len(who), 3)) * np.tile([[0.2], [1.0]], (40, 1))
+    cells = find_cells([f"p{p}" for p in who], what)
+    record = fit_hypotheses(points, cells)
+    new = np.flatnonzero(record.kind == Kind.NEW_PERSON)
+    centers, covariance = of_kind(record, Kind.NEW_PERSON)
+    np.testing.assert_allclose(centers, cell_means(points, cells), atol=1e-12)
+    for task, variance in (("calm", 0.04), ("wild", 1.0)):
+        spread = record.spread[new[cells.task == cells.tasks.index(task)]]
+        assert np.ptp(spread) == 0
+        found = spread[0] * covariance
+        assert np.linalg.norm(found - 2 * variance * np.eye(3)) < variance
+
+
+def test_the_widest_hypothesis_is_that_person_and_task_are_new() -> None:
+    """However far a motion is from all others, it is not that of a known person."""
+    rng = np.random.default_rng(6)
+    who, what = zip(*[(p, t) for p in "abcdef" for t in "uvwxyz"] * 2, strict=True)
+    points = (
+        rng.standard_normal((len(who), 3)) + 3 * np.array([ord(t) - 120 for t in what])[:, None]
     )
-    points = rng.standard_normal((len(who), 4))
-    cells = find_cells(who, what)
-    means = cell_means(points, cells)
-    apart = [
-        means[i] - means[j]
-        for i, j in permutations(range(len(means)), 2)
-        if cells.task[i] == cells.task[j]
-    ]
-    centres, covariance = of_kind(fit_hypotheses(points, cells), Kind.NEW_PERSON)
-    np.testing.assert_allclose(centres, means, atol=1e-12)
-    np.testing.assert_allclose(covariance, shrunk(np.mean([np.outer(d, d) for d in apart], axis=0)))
+    record = fit_hypotheses(points, find_cells(who, what))
+    for direction in np.vstack([np.eye(3), -np.eye(3), np.ones((1, 3))]):
+        logs = record.log_likelihoods(100 * direction[None])[0]
+        assert record.kind[logs.argmax()] == Kind.NEW_BOTH
+
+
+def test_repeated_dances_do_not_make_other_takes_wide() -> None:
+    """Only one task is repeated, and its takes differ more than its persons do."""
+    rng = np.random.default_rng(7)
+    places, ways = 4.0 * rng.standard_normal((12, 5)), 0.5 * rng.standard_normal((8, 5))
+    persons, tasks, points = [], [], []
+    for person, way in enumerate(ways):
+        for task, place in enumerate(places):
+            takes = 3 if task == 0 else 1
+            persons += [f"p{person}"] * takes
+            tasks += [f"t{task:02}"] * takes
+            points += list(
+                place + way + (3.0 if task == 0 else 0.1) * rng.standard_normal((takes, 5))
+            )
+    record = fit_hypotheses(np.array(points), find_cells(persons, tasks))
+    seen, new = (
+        record.spread[h] * np.linalg.norm(np.linalg.inv(record.whiteners[record.form[h]])) ** 2
+        for h in (
+            np.flatnonzero((record.task == 1) & (record.kind == kind))[0]
+            for kind in (Kind.SEEN, Kind.NEW_PERSON)
+        )
+    )
+    assert seen < new / 2
 
 
 def test_the_task_of_a_new_person_is_recognized_if_persons_do_it_differently() -> None:
@@ -94,7 +128,7 @@ def test_each_task_has_its_own_variation_of_takes() -> None:
         - gaussian_at(record, h, record.means[h] @ back[record.form[h]])
         for name, h in (("walk", walk), ("wave", wave))
     }
-    assert off["walk"] < 5 * off["wave"] < 0
+    assert off["walk"] < 3 * off["wave"] < 0
 
 
 def test_further_takes_have_the_covariance_of_their_cells() -> None:
