@@ -27,7 +27,10 @@ def print_tables(found: RecognitionEvaluation) -> None:
     clips = found.clips
     kinds = {"person": clips.persons, "task": clips.tasks, "source": clips.sources}
     counted = ", ".join(_counted(len(names_of(labels)), kind) for kind, labels in kinds.items())
-    typer.echo(f"{len(clips)} clips: {counted}. No method has seen the clips that it is judged on.")
+    typer.echo(
+        f"{len(clips)} clips: {counted}. No method has seen the clips that it is judged on. "
+        "In parentheses: 95 % confidence intervals (Wilson)."
+    )
     _print_recognized(found)
     _print_label_given(found.label_given)
     for way, factor in _LEFT_OUT_FACTORS.items():
@@ -81,7 +84,7 @@ def _print_groups(held: HeldOut) -> None:
 
 
 def _values(found: Recognized) -> list[object]:
-    return [found.task.value, found.person.value, found.both.value]
+    return [found.task, found.person, found.both]
 
 
 def _print_label_given(judged: Sequence[LabelGiven]) -> None:
@@ -94,10 +97,10 @@ def _print_label_given(judged: Sequence[LabelGiven]) -> None:
         [
             [
                 one.method,
-                one.neither.task.value,
-                one.given.task.value,
-                one.neither.person.value,
-                one.given.person.value,
+                one.neither.task,
+                one.given.task,
+                one.neither.person,
+                one.given.person,
             ]
             for one in judged
         ],
@@ -129,13 +132,13 @@ def _new_row(judged: Judged, factor: str, other: str) -> list[object]:
     share: Share = getattr(judged.of_new, other)
     found = judged.unknown.get(factor)
     if found is None:
-        return [judged.method, share.value, *[None] * 7]
+        return [judged.method, share, *[None] * 7]
     return [
         judged.method,
-        share.value,
-        found.refused.value,
-        found.accepted.value,
-        found.accepted_together.value,
+        share,
+        found.refused,
+        found.accepted,
+        found.accepted_together,
         found.balanced_accuracy,
         found.area_under_curve,
         found.equal_error_rate,
@@ -151,7 +154,7 @@ def _print_categories(method: str, found: Unknown, factor: str) -> None:
         f"each_{factor}_left_out",
         [f"{factor} left out", "clips", "called new", "balanced", "else taken for"],
         [
-            [one.label, one.refused.of, one.refused.value, one.balanced_accuracy, one.taken_for]
+            [one.label, one.refused.of, one.refused, one.balanced_accuracy, one.taken_for]
             for one in ordered
         ],
         MAX_SHOWN,
@@ -169,8 +172,8 @@ def _print_sources(held: HeldOut) -> None:
         [
             [
                 one.method,
-                *(one.by_name[name].task.value for name in names),
-                one.recognized.task.value,
+                *(one.by_name[name].task for name in names),
+                one.recognized.task,
             ]
             for one in held.methods
         ],
@@ -179,7 +182,7 @@ def _print_sources(held: HeldOut) -> None:
         clips = held.methods[0].by_name[name].task.of
         typer.echo(f"source {number}: {name}, {clips} clips")
     rows: list[list[object]] = [
-        [one.method, found.refused.value, found.accepted.value, found.balanced_accuracy,
+        [one.method, found.refused, found.accepted, found.balanced_accuracy,
          found.area_under_curve]
         for one in held.methods
         if (found := one.unknown.get("task")) is not None

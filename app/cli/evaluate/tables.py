@@ -20,6 +20,7 @@ import typer
 from app.cli.evaluate.drawing import check_file
 from app.cli.files import write_whole
 from app.cli.output import print_json, print_table
+from app.evaluate.recognition.shares import Share
 from app.formats.csv.writer import Cell, csv_table
 
 CsvFile = Annotated[
@@ -47,9 +48,25 @@ _KEPT: ContextVar[list[Table] | None] = ContextVar("tables that are kept", defau
 
 
 def show_table(name: str, columns: Sequence[str], rows: Rows, most: int | None = None) -> None:
-    """Print a table, at most the first `most` rows of it; all rows go to the CSV file."""
-    keep_table(name, columns, rows)
-    print_table(columns, rows[:most])
+    """Print a table, at most the first `most` rows of it; all rows go to the CSV file.
+
+    A Share is printed with its 95 % confidence interval; the CSV file has its value.
+    """
+    keep_table(name, columns, [[_value(cell) for cell in row] for row in rows])
+    print_table(columns, [[_with_interval(cell) for cell in row] for row in rows[:most]])
+
+
+def _value(cell: object) -> object:
+    return cell.value if isinstance(cell, Share) else cell
+
+
+def _with_interval(cell: object) -> object:
+    if not isinstance(cell, Share):
+        return cell
+    if cell.value is None:
+        return None
+    low, high = (f"{bound:.2f}" for bound in cell.interval)
+    return f"{cell.value:.3f} ({low}-{high})"
 
 
 def keep_table(name: str, columns: Sequence[str], rows: Rows) -> None:
