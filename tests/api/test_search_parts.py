@@ -43,6 +43,7 @@ def test_hits_have_their_shape_and_say_what_each_part_contributed(
         "items",
         "next",
         "unknown_words",
+        "confidence",
         "expanded",
     }
     assert (reply["method"], reply["unknown_words"]) == ("fused", ["zzyzx"])

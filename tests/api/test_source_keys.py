@@ -168,5 +168,6 @@ def test_every_route_with_such_keys_is_known() -> None:
         *("list_clips", "get_clip", "get_file", "get_audio", "get_motion", "get_descriptor"),
         *("get_thumbnail", "get_alignment", "get_keyposes", "get_segments", "get_low_dimensional"),
         *("get_animation", "get_export", "get_symbol_motion", "get_manifest"),
+        *("get_self_similarity", "get_motion_volume"),
         *("search_motion", "search_words", "search_pose", "search_parts"),
     }

@@ -25,6 +25,7 @@ PERMISSIVE = frozenset(
     {
         "0BSD",
         "Apache-2.0",
+        "Apache-2.0 WITH LLVM-exception",
         "BSD",
         "BSD-2-Clause",
         "BSD-3-Clause",
@@ -36,6 +37,9 @@ PERMISSIVE = frozenset(
     }
 )
 """Licenses that ask for no more than a notice (SPDX; BSD stands for one of its variants)."""
+LIBRARIES = {"certifi": "MPL-2.0", "soxr": "LGPL-2.1-or-later"}
+"""Packages that come unchanged as files of their own, so that anybody can replace them: all that
+their licenses ask for. librosa brings both."""
 _PINNED = re.compile(r"^([A-Za-z0-9_.-]+)==([^\s;]+)", re.MULTILINE)
 _OLD_NAMES = (
     (r"apache software|apache license,? version 2", "Apache-2.0"),
@@ -44,6 +48,7 @@ _OLD_NAMES = (
     (r"\bisc\b", "ISC"),
     (r"python software foundation|\bpsf\b", "PSF-2.0"),
     (r"\bmit\b", "MIT"),
+    (r"\bmpl[- ]2\.0\b|mozilla public license 2\.0", "MPL-2.0"),
 )
 """Names before SPDX, as patterns on lower-case text."""
 _BETWEEN = re.compile(r"\s+(?:AND|OR)\s+|[()]")
@@ -60,6 +65,8 @@ class Licensed:
     @property
     def is_permissive(self) -> bool:
         """Whether Apache-2.0 software may bring the package along."""
+        if LIBRARIES.get(self.name) == self.license:
+            return True
         parts = [part for part in _BETWEEN.split(self.license) if part]
         return bool(parts) and all(part in PERMISSIVE for part in parts)
 

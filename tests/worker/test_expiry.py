@@ -16,7 +16,7 @@ from app.services.library.library import Library
 from app.store import audit
 from app.store.database.ids import utc_now
 from app.store.database.service_tables import audit_log
-from app.store.database.service_tables import jobs as table
+from app.store.database.tables import jobs as table
 from app.worker.expiry import Expiry
 from tests.libraries import settings_for
 from tests.zip_archives import zip_archive

@@ -15,7 +15,7 @@ from app.services.library import audit
 router = APIRouter(prefix="/v1/audit", tags=["service"], dependencies=[administers])
 
 
-@router.get("", dependencies=[quick], responses=refusals())
+@router.get("", dependencies=[quick], responses=refusals(404))
 def list_audit(lib: Lib, query: Annotated[AuditQuery, Query()]) -> AuditList:
     """Who changed, exported or forgot what, the newest first. This needs the role `admin`.
 

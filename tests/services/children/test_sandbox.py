@@ -37,7 +37,8 @@ def _enter(box: Sandbox) -> None:
 
 
 @pytest.fixture
-def cache(tmp_path: Path) -> Path:
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.delenv(sandbox.NUMBA_CACHE, raising=False)
     return tmp_path / "cache"
 
 

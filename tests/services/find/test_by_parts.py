@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from app.demo import DemoClip
-from app.errors import BadField, ClipNotFound
+from app.errors import BadField, ClipNotFound, PageNotFound
 from app.search.example.methods import Method
 from app.services.find import find
 from app.services.find.by_parts import MAX_EXAMPLES, find_by_parts
@@ -230,7 +230,6 @@ def test_a_word_that_the_library_does_not_know_is_reported(
         ({"mode": "best"}, "mode"),
         ({"limit": 0}, "limit"),
         ({"words": [" "]}, "words"),
-        ({"cursor": "x"}, "cursor"),
     ],
 )
 def test_what_is_wrong_is_named(
@@ -240,6 +239,13 @@ def test_what_is_wrong_is_named(
     with pytest.raises(BadField) as refused:
         find_by_parts(ready_library, replace(query, **changes))
     assert location in {place.location for place in refused.value.places}
+
+
+def test_a_cursor_that_is_none_is_refused(ready_library: Library, clip_of: FindClip) -> None:
+    with pytest.raises(PageNotFound):
+        find_by_parts(
+            ready_library, replace(ComposedQuery(_like(clip_of("ada", "walk"))), cursor="x")
+        )
 
 
 def test_the_wrong_example_is_named(ready_library: Library, clip_of: FindClip) -> None:

@@ -184,7 +184,6 @@ def test_a_filter_is_applied_before_the_ranking(hidden: Hidden, method: str) -> 
         ({"method": "msv-dtw"}, "method"),
         ({"start": 1e4}, "start"),
         ({"limit": 0}, "limit"),
-        ({"cursor": "nonsense"}, "cursor"),
         ({"scope": "frames"}, "scope"),
     ],
 )

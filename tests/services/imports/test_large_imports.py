@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from app.demo import DemoClip
-from app.errors import BadField, Conflict, TooLarge
+from app.errors import Conflict, PageNotFound, TooLarge
 from app.services.clips import catalogue as clips
 from app.services.clips import jobs
 from app.services.clips.jobs import FIRST_FILES
@@ -94,7 +94,7 @@ def test_the_result_of_a_large_import_is_small_and_its_files_are_paged(lib: Libr
     assert [file.path for file in (*page.items, *again.items)] == names
     assert again.next is None
     assert jobs.list_files(lib, job.id, FileOutcome.READY).items == ()
-    with pytest.raises(BadField):
+    with pytest.raises(PageNotFound):
         jobs.list_files(lib, job.id, cursor="nonsense")
 
 

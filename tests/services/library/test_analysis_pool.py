@@ -24,7 +24,6 @@ from app.errors import (
     Unreadable,
 )
 from app.kinedex_error import KinedexError
-from app.services.library import analysis_pool
 from app.services.library.analysis_pool import AnalysisPool, AnalysisRequest, Limits
 from tests.busy_processes import ENDLESS, LONG, busy_children, children_of, repeated
 from tests.live import NET_S, wait_until
@@ -157,17 +156,3 @@ def test_children_do_not_outlive_a_killed_parent(
         parent.send_signal(signal.SIGKILL)
     _, alive = psutil.wait_procs(children, timeout=300)
     assert not alive
-
-
-def test_children_keep_compiled_code_in_the_folder_of_the_pool(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    for other_step in ("log_like_parent", "limit_memory"):
-        monkeypatch.setattr(analysis_pool, other_step, lambda _: None)
-    monkeypatch.setenv("NUMBA_CACHE_DIR", "")
-    monkeypatch.delenv("NUMBA_CACHE_DIR")
-    analysis_pool._prepare(100, "info", str(tmp_path / "numba"))
-    assert os.environ["NUMBA_CACHE_DIR"] == str(tmp_path / "numba")
-    # a folder that the operator names comes first
-    analysis_pool._prepare(100, "info", str(tmp_path / "other"))
-    assert os.environ["NUMBA_CACHE_DIR"] == str(tmp_path / "numba")
