@@ -59,7 +59,7 @@ class Server {
 
   /** A key is asked for: it was never given, or it counts no more. */
   refused(): void {
-    this.session = { keys_needed: true, role: null };
+    this.session = { keys_needed: true, role: null, source: null, expires_at: null };
   }
 
   #later(): void {

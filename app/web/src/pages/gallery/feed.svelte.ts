@@ -53,7 +53,11 @@ export class Feed {
 
   async #load(limit: number): Promise<void> {
     try {
-      const query = { ...this.#query, limit, cursor: this.#cursor };
+      const query = {
+        ...this.#query,
+        limit,
+        ...(this.#cursor === null ? {} : { cursor: this.#cursor }),
+      };
       const page = await ask(api.GET("/v1/clips", { params: { query } }));
       this.#loading = null; // before the clips show: the grid may ask for more at once
       this.clips = [...this.clips, ...page.items];
