@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, AwareDatetime, Field
+from pydantic import AfterValidator, AwareDatetime, BeforeValidator, Field
 
 from app.api.schemas.base import Cursor, Id, Incoming, Limit, Outgoing, Paged
 from app.store.audit import AuditFilter
@@ -20,7 +20,16 @@ def _in_utc(time: datetime) -> datetime:
         return (datetime.min if time.year == 1 else datetime.max).replace(tzinfo=UTC)
 
 
-Time = Annotated[AwareDatetime, AfterValidator(_in_utc)]
+def _not_a_number(value: object) -> object:
+    """pydantic takes a number for seconds since 1970; the description has times only."""
+    try:
+        float(str(value))
+    except ValueError:
+        return value
+    raise ValueError("must be a time as 2026-11-30T12:00:00Z")
+
+
+Time = Annotated[AwareDatetime, BeforeValidator(_not_a_number), AfterValidator(_in_utc)]
 
 
 class AuditEntry(Outgoing):
