@@ -24,7 +24,7 @@ _IDEMPOTENCY_KEY = {
     "name": HEADER,
     "in": "header",
     "required": False,
-    "schema": {"type": "string", "minLength": 1, "maxLength": 255},
+    "schema": {"type": "string", "minLength": 1, "maxLength": 255, "pattern": "^[!-~]+$"},
     "description": "A random text that you choose for this call. If you send the call again with "
     "the same text within 24 hours, it takes no effect again and returns the first answer. With "
     "another body it is refused (422); while the first call runs, it answers 409.",

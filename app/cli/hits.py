@@ -37,13 +37,14 @@ def print_hits(hits: Any, times: Sequence[str], *, as_json: bool, as_csv: bool) 
         others = {"start", "end", "time"} - set(times)
         print_csv([name for name in COLUMNS if name not in others], hits.to_json()["items"])
     else:
-        columns = ("rank", "score", "distance", *times, "name", "person", "task", "id")
+        # Parts of clips have their times instead: with both, a line of 80 characters is too short.
+        numbers = times or ("distance",)
+        columns = ("rank", "score", *numbers, "name", "person", "task", "id")
         rows = [
             (
                 hit.rank,
                 hit.score,
-                hit.distance,
-                *(getattr(hit, name) for name in times),
+                *(getattr(hit, name) for name in numbers),
                 clip_title(hit.clip.name, hit.clip.path),
                 hit.clip.person,
                 hit.clip.task,

@@ -77,8 +77,6 @@ def print_table(
         is_numeric = bool(cells) and all(isinstance(cell, int | float) for cell in cells)
         is_id = name == "id" or name.endswith("_id")
         table.add_column(name, justify="right" if is_numeric else "left", no_wrap=is_id)
-        if is_numeric:
-            table.columns[-1].min_width = len(name)  # a number's name is never cut
         if is_id:
             table.columns[-1].min_width = max((len(str(cell)) for cell in cells), default=0)
     for row in rows:

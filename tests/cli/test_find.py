@@ -73,9 +73,9 @@ def test_parts_of_clips_are_found_with_their_bounds(kinedex: Kinedex, folder: Pa
     assert (first["clip"]["person"], first["clip"]["task"]) == ("ada", "kick")
     assert [first["start"], first["end"]] == pytest.approx([0.5, 2.0], abs=0.11)
     lines = kinedex(*arguments).out.splitlines()
-    columns = ["rank", "score", "distance", "start", "end", "name", "person", "task", "id"]
+    columns = ["rank", "score", "start", "end", "name", "person", "task", "id"]
     assert lines[0].split() == columns
-    assert lines[1].split()[3:5] == [f"{first['start']:.3f}", f"{first['end']:.3f}"]
+    assert lines[1].split()[2:4] == [f"{first['start']:.3f}", f"{first['end']:.3f}"]
     assert "scope: " in _refused(kinedex, *part, "--scope", "frames")
     assert kinedex("search", "--words", "kick", "--scope", "windows").code == 2
 

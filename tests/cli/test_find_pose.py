@@ -32,7 +32,7 @@ def test_positions_of_a_file_and_a_table(kinedex: Kinedex, tmp_path: Path) -> No
     found = kinedex(*asked, "--filter", '{"task": "wave"}', "--places", "all", "--json").json()
     assert {hit["clip"]["task"] for hit in found["items"]} == {"wave"}
     lines = kinedex(*asked).out.splitlines()
-    assert lines[0].split() == ["rank", "score", "distance", "time", "name", "person", "task", "id"]
+    assert lines[0].split() == ["rank", "score", "time", "name", "person", "task", "id"]
     assert len(lines) == 3
 
 
