@@ -15,8 +15,11 @@ from tests.live import Live, serve, serve_demo
 # WordNet takes seconds to load, in every fit of every library; its own test sets this to true.
 os.environ.setdefault("KINEDEX_WORDNET", "false")
 
-# Compiling librosa takes 20 s and more; all libraries of the tests share the result.
-os.environ.setdefault("NUMBA_CACHE_DIR", str(Path(gettempdir()) / "kinedex-tests-numba"))
+# Compiling librosa takes 20 s and more; all libraries of one process of tests share the result. Two
+# that compile at the same time can spoil it: see `app/services/library/compiled_code.py`.
+_COMPILED = Path(gettempdir()) / f"kinedex-tests-numba-{os.environ.get('PYTEST_XDIST_WORKER', '')}"
+_COMPILED.mkdir(exist_ok=True)
+os.environ["NUMBA_CACHE_DIR"] = str(_COMPILED)
 
 # On a busy machine every example takes long, and that says nothing about the code.
 settings.register_profile("busy", deadline=None, suppress_health_check=[HealthCheck.too_slow])

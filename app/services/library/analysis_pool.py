@@ -11,6 +11,7 @@ import concurrent.futures
 import logging
 import threading
 from collections.abc import Callable, Mapping
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -34,6 +35,7 @@ from app.services.children.given_files import open_given
 from app.services.children.pool import ChildPool, TaskTimedOut
 from app.services.children.processes import log_like_parent, stderr_silenced
 from app.services.children.sandbox import Sandbox, status
+from app.services.library.compiled_code import compiled_code
 from app.store.files.hash_check import read_whole
 
 if TYPE_CHECKING:
@@ -229,9 +231,12 @@ def analyze_file(request: AnalysisRequest, limits: Limits) -> Analysis:
         return analyze.describe_for_search(motion)
     t1, t2 = request.thresholds or (T1, T2)
     given = RhythmInput(request.beats, request.tempo, request.audio_offset)
-    with times.stage("listen"):
-        onsets, doubts = _onsets(request.audio_path)
-    found = analyze.analyze(motion, t1=t1, t2=t2, rhythm_input=given, onsets=onsets, times=times)
+    with nullcontext() if request.audio_path is None else compiled_code():
+        with times.stage("listen"):
+            onsets, doubts = _onsets(request.audio_path)
+        found = analyze.analyze(
+            motion, t1=t1, t2=t2, rhythm_input=given, onsets=onsets, times=times
+        )
     return replace(found, cautions=(*doubts, *found.cautions))
 
 
