@@ -30,6 +30,7 @@ def whitened(points: FloatArray, distances: FloatArray, neighbors: int) -> Float
     if variance <= 0.0:  # fewer than two points, or equal ones
         return points
     root = np.linalg.cholesky(scatter / variance + RIDGE * np.eye(len(scatter)))
+    # not scipy's solve_triangular: a search by command does not wait for scipy.linalg
     mapped = np.linalg.solve(root, points.T).T
     return np.asarray(mapped * np.sqrt(_spread(points) / _spread(mapped)))
 

@@ -3,7 +3,7 @@
 The motion vector of a part of a motion differs from that of the whole: in its mean pose, in what
 changes from start to end, in how much each joint moves. The windows of one second that are stored
 for searches inside clips have one length in all clips. So a cut motion has the windows of its
-original, and windows like those of other clips of its task.
+original, and windows like those of other clips of its task. Our own.
 """
 
 from __future__ import annotations
