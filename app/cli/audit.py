@@ -45,7 +45,7 @@ def audit(
         print_csv(COLUMNS, rows)
     else:
         columns = ("at", "action", "by", "from", "clip_id", "details")
-        print_table(columns, [_row(entry) for entry in entries], cut=("details",))
+        print_table(columns, [_row(entry) for entry in entries])
 
 
 def _row(entry: dict[str, Any]) -> tuple[object, ...]:

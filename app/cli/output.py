@@ -111,7 +111,8 @@ def progress_bar() -> Progress:
 def _cell(cell: object, is_cut: bool) -> Text:
     if is_cut:
         return Text(_printable(cell).replace("\n", " "), no_wrap=True, overflow="ellipsis")
-    return Text(_printable(cell))
+    # a word longer than its column goes on in the next line; rich would cut it
+    return Text(_printable(cell), overflow="fold")
 
 
 def _csv_cell(cell: object) -> object:

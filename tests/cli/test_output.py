@@ -58,3 +58,13 @@ def test_the_title_of_a_clip_tells_files_with_one_name_apart(
 ) -> None:
     monkeypatch.setattr(output.console, "width", width)
     assert output.clip_title(name, path) == title
+
+
+def test_wrapped_cells_are_complete(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(output.console, "width", 30)
+    detail = "revoked_key_id: 0123456789abcdef0123456789abcdef"
+    output.print_table(("by", "details"), [("-", detail)])
+    lines = capsys.readouterr().out.splitlines()[1:]
+    assert "".join(line[4:] for line in lines).replace(" ", "") == detail.replace(" ", "")
