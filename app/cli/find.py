@@ -173,6 +173,9 @@ def recognize(
         ]
         print_table(("", "answer", "score"), rows)
         print_table(("word", "score"), [(one.word, one.score) for one in answer.words])
+    if not as_json:
+        for warning in answer.warnings:
+            typer.echo(warning, err=True)
 
 
 def _answer_rows(answer: Recognition) -> list[dict[str, Any]]:

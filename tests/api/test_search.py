@@ -249,7 +249,7 @@ def test_recognition_of_a_stored_clip(
     demo: httpx2.Client, walk: dict[str, Any], method: str
 ) -> None:
     reply = demo.post("/v1/recognize", json={"clip_id": walk["id"], "method": method}).json()
-    assert set(reply) == {"person", "task", "words", "calibrated"}
+    assert set(reply) == {"person", "task", "words", "calibrated", "warnings"}
     for factor in ("person", "task"):
         assert set(reply[factor]) == {"label", "known", "score", "candidates"}
     assert reply["task"]["candidates"][0]["label"] == "walk"

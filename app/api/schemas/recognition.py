@@ -106,7 +106,11 @@ class Recognition(Outgoing):
     calibrated: bool = Field(
         description="Whether the scores of person and task are beliefs, calibrated on clips that "
         "were held out. If false, they are shares by nearness and say nothing about errors: so do "
-        "`signatures` and `multilinear`."
+        "`signatures` and `multilinear`, and all methods where `warnings` says so."
+    )
+    warnings: list[str] = Field(
+        description="What could not be judged when the model was fitted, because the library has "
+        "too few persons or tasks to hold one out."
     )
     words: list[WordScore]
 
@@ -117,5 +121,6 @@ class Recognition(Outgoing):
             person=Answer.of(recognized.person),
             task=Answer.of(recognized.task),
             calibrated=recognized.calibrated,
+            warnings=list(recognized.warnings),
             words=[WordScore(word=word, score=score) for word, score in recognized.words],
         )

@@ -61,6 +61,11 @@ class Calibration:
     known_novelty: FloatArray
     new_novelty: FloatArray
 
+    @property
+    def is_judged(self) -> bool:
+        """Whether known and new clips could be held out: if not, no error rate is known."""
+        return bool(len(self.known_novelty) and len(self.new_novelty))
+
     def to_arrays(self, name: str) -> tuple[dict[str, np.ndarray[Any, Any]], list[float]]:
         """Arrays, their names beginning with `name`, and JSON-able numbers."""
         arrays = {

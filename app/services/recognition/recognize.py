@@ -9,7 +9,8 @@ import numpy as np
 from app.errors import ModelNotFitted
 from app.models.recognition.answers import NO_ANSWER, Answer, Recognition
 from app.models.recognition.multilinear import recognize_multilinear
-from app.models.recognition.perera import recognize_by_tensor
+from app.models.recognition.perera import TensorRecognizer, recognize_by_tensor
+from app.models.recognition.recognizer import Recognizer
 from app.models.recognition.recognizer import recognize as recognize_by_default
 from app.numerics.arrays import FloatArray
 from app.services import fields
@@ -31,6 +32,10 @@ CALIBRATED = ("default", "perera")
 """The methods whose scores are beliefs, calibrated on held-out clips. The scores of the others are
 shares by nearness."""
 WORDS_SHOWN = 10
+UNJUDGED = (
+    "No {0} could be held out when the model was fitted, since the library has too few. So nobody"
+    " knows how often a new {0} is called known here, and the scores of the {0} are no beliefs."
+)
 
 WordScores = tuple[tuple[str, float], ...]
 """(word, score 0..1), the best first."""
@@ -56,12 +61,13 @@ class Recognized:
     """Person, task, and words with their scores, the best first.
 
     calibrated: whether the scores of persons and tasks are beliefs; else they are shares by
-    nearness.
+    nearness. warnings: what nobody could judge in this library, in words.
     """
 
     person: Answer
     task: Answer
     calibrated: bool
+    warnings: tuple[str, ...]
     words: WordScores = field(default=())
 
 
@@ -85,13 +91,21 @@ def recognize(lib: Library, query: RecognizeQuery) -> Recognized:
     names = INPUTS.get(query.method, (SAMPLE,))
     arrays = describe(lib, query.source, (*names, *word_arrays(query.word_mode))).arrays
     sample = np.concatenate([arrays[name] for name in names])
-    answers = _person_and_task(lib, sample, query)
+    answers, unjudged = _person_and_task(lib, sample, query)
     words = words_of(lib, arrays, query.word_mode)
-    return Recognized(answers.person, answers.task, query.method in CALIBRATED, words)
+    calibrated = query.method in CALIBRATED and not unjudged
+    warnings = tuple(UNJUDGED.format(factor) for factor in unjudged)
+    return Recognized(answers.person, answers.task, calibrated, warnings, words)
 
 
-def _person_and_task(lib: Library, sample: FloatArray, query: RecognizeQuery) -> Recognition:
-    """The recognized person and task; sample: the concatenated INPUTS of the query's method."""
+def _person_and_task(
+    lib: Library, sample: FloatArray, query: RecognizeQuery
+) -> tuple[Recognition, list[str]]:
+    """The recognized person and task, and which of both the model could not be judged on.
+
+    sample: the concatenated INPUTS of the query's method.
+    """
+    unjudged: list[str] = []
     person = fields.text("known_person", query.known_person)
     task = fields.text("known_task", query.known_task)
     if query.method == "multilinear":
@@ -103,12 +117,21 @@ def _person_and_task(lib: Library, sample: FloatArray, query: RecognizeQuery) ->
     elif query.method == "perera":
         tensor = lib.models.perera(lib.store).model
         (found,) = recognize_by_tensor(tensor, sample[None], person, task)
+        unjudged = _unjudged(tensor)
     else:
-        found = recognize_by_default(lib.models.recognizer(lib.store).model, sample, person, task)
+        recognizer = lib.models.recognizer(lib.store).model
+        found = recognize_by_default(recognizer, sample, person, task)
+        unjudged = _unjudged(recognizer)
     # A model that was fitted before the setting was switched off may be active for a moment.
     if not lib.settings.recognize_persons:
-        return replace(found, person=NO_ANSWER)
-    return found
+        return replace(found, person=NO_ANSWER), [each for each in unjudged if each != "person"]
+    return found, unjudged
+
+
+def _unjudged(model: Recognizer | TensorRecognizer) -> list[str]:
+    """Which of "person" and "task" had too few labels to hold some out of the fit."""
+    calibrations = {"person": model.person_calibration, "task": model.task_calibration}
+    return [factor for factor, one in calibrations.items() if not one.is_judged]
 
 
 def words_of(lib: Library, arrays: Arrays, mode: str) -> WordScores:

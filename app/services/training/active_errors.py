@@ -43,17 +43,13 @@ def active_errors(lib: Library, record: ModelRecord) -> Mapping[str, Errors] | N
         return None
     model = fitted.model
     calibrations = {"person": model.person_calibration, "task": model.task_calibration}
-    return {factor: _errors(one) for factor, one in calibrations.items() if _is_judged(one)}
+    return {factor: _errors(one) for factor, one in calibrations.items() if one.is_judged}
 
 
 def _active(lib: Library, kind: str) -> Fitted[Recognizer] | Fitted[TensorRecognizer]:
     if kind == ModelKind.PERERA:
         return lib.models.perera(lib.store)
     return lib.models.recognizer(lib.store)
-
-
-def _is_judged(calibration: Calibration) -> bool:
-    return bool(len(calibration.known_novelty) and len(calibration.new_novelty))
 
 
 def _errors(calibration: Calibration) -> Errors:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from app.demo import DemoClip
+from app.demo import DemoClip, demo_clips
 from app.errors import BadField, ModelNotFitted
 from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
@@ -33,6 +33,21 @@ def test_a_stored_clip_is_recognized(
     scores = [score for _, score in found.words]
     assert "wave" in dict(found.words)
     assert scores == sorted(scores, reverse=True)
+
+
+def test_a_library_with_one_label_says_that_nothing_could_be_held_out(
+    lib: Library, some_demo_clips: list[DemoClip]
+) -> None:
+    for clip in demo_clips(["ada"], ["walk"], takes=2):
+        upload(lib, clip)
+    models.request_fit(lib)
+    work(lib.settings)
+    stranger = next(c for c in some_demo_clips if (c.person, c.task) == ("chika", "kick"))
+    for method in ("default", "perera"):
+        source = QuerySource(content=io.BytesIO(stranger.content))
+        found = recognize.recognize(lib, RecognizeQuery(source, method=method))
+        assert not found.calibrated
+        assert [warning.split()[1] for warning in found.warnings] == ["person", "task"]
 
 
 def test_a_known_person_or_task_is_the_answer(ready_library: Library, clip_of: FindClip) -> None:

@@ -55,10 +55,13 @@ class Recognition(Record):
 
     calibrated: Whether the scores of person and task are beliefs, calibrated on clips that were
     held out. If false, they are shares by nearness and say nothing about errors: so do
-    `signatures` and `multilinear`.
+    `signatures` and `multilinear`, and all methods where `warnings` says so.
+    warnings: What could not be judged when the model was fitted, because the library has too
+    few persons or tasks to hold one out.
     """
 
     person: Answer
     task: Answer
     calibrated: bool
+    warnings: list[str]
     words: list[WordScore]
