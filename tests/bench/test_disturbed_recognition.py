@@ -13,6 +13,7 @@ on new clips.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -21,8 +22,10 @@ import pytest
 from app.models.folds import grouped_folds, recording_of
 from app.models.recognition.answers import Answer
 from app.models.recognition.copies import disturbed_copies, evenly_chosen
+from app.models.recognition.disturbances import mirrored
 from app.models.recognition.recognizer import Recognizer, fit_recognizer, recognize_many
 from app.models.recognition.views import full_samples
+from app.motion.roles.sided_texts import exchanged
 from app.numerics.area_under_curve import area_under_curve
 from tests.bench.disturbed_clips import (
     ARRAYS,
@@ -63,6 +66,15 @@ def test_recognition() -> None:
         assert unknown <= MOST_UNKNOWN.get(name, 1.0), name
         _print_answers(name, "person", [one.person for one in found], library, asked)
         _print_answers(name, "task", [one.task for one in found], library, asked)
+    other_side = replace(
+        library, rows=[row | {"task": exchanged(row["task"])} for row in library.rows]
+    )
+    found = recognize_many(
+        recognizer, _samples([described(mirrored(library.motions[i], 0)) for i in asked])
+    )
+    for factor in ("person", "task"):
+        answers = [getattr(one, factor) for one in found]
+        _print_answers("mirrored", factor, answers, other_side, asked)
     FIGURES.print()
 
 

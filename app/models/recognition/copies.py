@@ -1,6 +1,7 @@
 """Disturbed copies of clips, from which the recognizer learns what must not matter.
 
-A copy has the person and the task of its clip. The difference between both says how much noise, a
+A copy has the person and the task of its clip; a mirrored one has the task of the other side
+(app.models.recognition.mirrored_cells). The difference between both says how much noise, a
 wrong speed or a lost start changes the description of a motion. Copies are no takes: they say
 nothing about how a person varies, and a library with one take of each cell has them too.
 """
@@ -14,7 +15,14 @@ import numpy as np
 
 from app.analysis.analyze import describe_for_search
 from app.errors import TooShort
-from app.models.recognition.disturbances import Disturb, faster, jitter, kept, noise
+from app.models.recognition.disturbances import (
+    Disturb,
+    faster,
+    jitter,
+    kept,
+    mirrored,
+    noise,
+)
 from app.models.recognition.kinds import Disturbed
 from app.models.recognition.views import BothViews
 from app.motion.frame.body_frame import ANALYSIS_RATE
@@ -28,6 +36,9 @@ LIGHT: tuple[Disturb, ...] = (jitter(1.0), noise(6.0), faster(1.25), faster(0.8)
 CUTS: tuple[Disturb, ...] = (kept(0.15, 0.85), kept(0.25, 0.75))
 """Disturbances that take away its start and end."""
 
+DISTURBANCES = (*LIGHT, *CUTS, mirrored)
+"""The copies of a clip, in this order."""
+
 MAX_COPIED = 200
 """The largest number of clips that are copied, since describing copies takes 70 ms of CPU time for
 each clip. They only give a covariance, for which more clips are not needed."""
@@ -38,17 +49,17 @@ Moments = dict[Disturbed, FloatArray]
 """(d, d) second moments of the copies minus their clips, by kind of disturbance."""
 
 ClipCopies = Sequence[FloatArray | None]
-"""For each clip the full samples (6, 1762) of its copies, LIGHT and then CUTS, or None."""
+"""For each clip the full samples (7, 1762) of its DISTURBANCES, or None."""
 
 
 def disturbed_copies(positions: FloatArray, seed: int = 0) -> FloatArray:
-    """(6, 1762) full samples of the copies of a clip; float32.
+    """(7, 1762) full samples of the copies of a clip; float32.
 
     positions: (n, 13, 3) of the joints in SUN_ROLES order, meters, Y up, at ANALYSIS_RATE. A copy
     that is too short is the clip itself. Raises TooShort for a clip that is too short.
     """
     motion = _motion_of(positions)
-    return np.stack([_described(disturb(motion, seed), motion) for disturb in (*LIGHT, *CUTS)])
+    return np.stack([_described(disturb(motion, seed), motion) for disturb in DISTURBANCES])
 
 
 def evenly_chosen(count: int) -> IntArray:
@@ -61,7 +72,7 @@ def evenly_chosen(count: int) -> IntArray:
 class CopiedClips:
     """m copied clips of n, in the coordinates of a recognizer's views.
 
-    clips: (n, d) each view of all clips; copied: (m,) indices of the copied ones; copies: (m, 6, d)
+    clips: (n, d) each view of all clips; copied: (m,) indices of the copied ones; copies: (m, 7, d)
     each view of their copies.
     """
 
@@ -81,6 +92,13 @@ class CopiedClips:
         )
         return _moments(sample), _moments(wide)
 
+    def mirrored(self, among: IntArray) -> tuple[IntArray, BothViews]:
+        """The mirrored copies of the copied clips `among`: the indices (k,) of their clips, and the
+        copies (k, d)."""
+        rows = np.flatnonzero(np.isin(self.copied, among))
+        sample, wide = (copies[rows, -1] for copies in self.copies)
+        return self.copied[rows], BothViews(sample, wide)
+
     def one_each(self, among: IntArray) -> tuple[IntArray, BothViews]:
         """One light copy of each copied clip `among`, the disturbances in turn: the indices (k,)
         of their clips, and the copies (k, d)."""
@@ -91,10 +109,11 @@ class CopiedClips:
 
 
 def _moments(differences: FloatArray) -> Moments:
-    """The moments of `differences` (m, 6, d)."""
+    """The moments of `differences` (m, 7, d). A mirrored copy is another motion, with means of its
+    own."""
     return {
         Disturbed.LIGHTLY: _second_moments(differences[:, : len(LIGHT)]),
-        Disturbed.CUT: _second_moments(differences),
+        Disturbed.CUT: _second_moments(differences[:, : len(LIGHT) + len(CUTS)]),
     }
 
 

@@ -72,6 +72,14 @@ def faster(factor: float) -> Disturb:
     return disturb
 
 
+def mirrored(motion: Motion, _: int) -> Motion:
+    """Left and right exchanged, by the joints' roles. A joint without a role keeps its place."""
+    other = np.arange(len(motion.names))
+    for role, joint in motion.roles.items():
+        other[joint] = motion.roles.get(role.mirrored(), joint)
+    return with_positions(motion, motion.positions[:, other] * [-1.0, 1.0, 1.0])
+
+
 def with_positions(motion: Motion, positions: FloatArray) -> Motion:
     """`motion` with other positions (frames, joints, 3), in meters."""
     return replace(motion, positions=positions.astype(np.float32))

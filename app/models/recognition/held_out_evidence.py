@@ -18,6 +18,7 @@ from app.models.holding_out import (
 from app.models.recognition.calibration import MIN_CLIPS, NEW, Calibration, fit_calibration
 from app.models.recognition.copies import CopiedClips
 from app.models.recognition.hypotheses import Hypotheses, fit_hypotheses
+from app.models.recognition.mirrored_cells import mirrored_cells
 from app.models.recognition.reach import allowance, nearest_cells, reach_of
 from app.models.recognition.views import BothViews, LogDensities, evidence, newness
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
@@ -51,10 +52,16 @@ class Labeled(NamedTuple):
     def hypotheses(self, index: IntArray) -> tuple[Hypotheses, Hypotheses]:
         """The hypotheses of both views, learned from the clips at these indices."""
         cells = self.cells(index)
-        moments = self.copied.moments(index) if self.copied else ({}, {})
+        points = self.points.of(index)
+        if self.copied is None:
+            return fit_hypotheses(points.sample, cells), fit_hypotheses(points.wide, cells)
+        which, copies = self.copied.mirrored(index)
+        labels = self.labels(which)
         sample, wide = (
-            fit_hypotheses(part, cells, own)
-            for part, own in zip(self.points.of(index), moments, strict=True)
+            fit_hypotheses(part, cells, moments, mirrored_cells(turned, *labels, cells))
+            for part, moments, turned in zip(
+                points, self.copied.moments(index), copies, strict=True
+            )
         )
         return sample, wide
 

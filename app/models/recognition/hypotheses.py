@@ -20,7 +20,8 @@ cells without using them:
   NEW_TASK, an error of prediction, is wider than that.
 
 Each is there once for clips as recorded and, with disturbed copies (app.models.recognition.copies),
-once for each kind of disturbance, whose covariance is added. With it in the only covariance of a
+once for each kind of disturbance, whose covariance is added. SEEN and NEW_PERSON are there once
+more for mirrored clips (app.models.recognition.mirrored_cells). With it in the only covariance of a
 hypothesis, new tasks of dataset 2 are told from known ones with an area under the curve of .955;
 without copies with .989; so with .994.
 """
@@ -35,6 +36,7 @@ import numpy as np
 
 from app.models.cells import Cells, cell_means, fit_effects
 from app.models.recognition.kinds import Disturbed, Kind
+from app.models.recognition.mirrored_cells import MirroredCells
 from app.models.recognition.person_differences import (
     PersonDifferences,
     label_centers,
@@ -89,7 +91,7 @@ class Hypotheses:
     log_scale: FloatArray
 
     def further_takes(self, count: int, max_cells: int) -> FloatArray:
-        """(n, d) random takes of cells, as recorded or lightly disturbed, from the SEEN ones.
+        """(n, d) random takes of SEEN cells, as recorded, lightly disturbed or mirrored.
 
         There are `count` takes of each of at most `max_cells` cells. The seed is fixed.
         """
@@ -163,12 +165,15 @@ class _Group:
 
 
 def fit_hypotheses(
-    points: FloatArray, cells: Cells, disturbances: Mapping[Disturbed, FloatArray] | None = None
+    points: FloatArray,
+    cells: Cells,
+    disturbances: Mapping[Disturbed, FloatArray] | None = None,
+    mirrored: MirroredCells | None = None,
 ) -> Hypotheses:
     """The hypotheses for a library with the labeled `points` (clips, d) in `cells`.
 
     disturbances: for each kind the (d, d) second moments of copies minus clips; None without
-    copies.
+    copies; mirrored: the mirrored cells, in the same coordinates; None without any.
     """
     means = cell_means(points, cells)
     total = shrunk(np.cov(means.T, bias=True).reshape(2 * [points.shape[1]]))
@@ -181,7 +186,8 @@ def fit_hypotheses(
     recorded = [*seen, unseen, new_person, new_task, new_both]
     kinds = (disturbances or {}).items()
     disturbed = [group.after(what, moments) for what, moments in kinds for group in recorded]
-    return _whitened(recorded + disturbed)
+    others = _mirrored(mirrored, seen, differences) if mirrored and seen else []
+    return _whitened(recorded + disturbed + others)
 
 
 def _seen(
@@ -211,6 +217,50 @@ def _seen(
         for form, covariance in enumerate(scatter.covariances)
         if len(own := full[scatter.form[full] == form])
     ]
+
+
+def _mirrored(
+    cells: MirroredCells, seen: list[_Group], differences: PersonDifferences
+) -> list[_Group]:
+    """SEEN and NEW_PERSON at the means of mirrored cells.
+
+    A mirrored cell is as wide as the recorded cell of its person and task. If there is none, it has
+    the covariance of most cells and their median width.
+    """
+    usual = max(range(len(seen)), key=lambda group: len(seen[group].means))
+    width = usual, float(np.median(seen[usual].spread))
+    recorded = {
+        (person, task): (group, spread)
+        for group, own in enumerate(seen)
+        for person, task, spread in zip(own.person, own.task, own.spread, strict=True)
+    }
+    found = [recorded.get(pair, width) for pair in zip(cells.person, cells.task, strict=True)]
+    group, spread = (np.array(part) for part in zip(*found, strict=True))
+    turned = [
+        _Group(
+            Kind.SEEN,
+            cells.means[own],
+            cells.person[own],
+            cells.task[own],
+            seen[each].covariance,
+            spread[own],
+            Disturbed.MIRRORED,
+        )
+        for each in np.unique(group)
+        if len(own := np.flatnonzero(group == each))
+    ]
+    nobody = np.full(len(cells.person), -1)
+    size = differences.size[cells.task]
+    by_others = _Group(
+        Kind.NEW_PERSON,
+        cells.means,
+        nobody,
+        cells.task,
+        differences.covariance,
+        size,
+        Disturbed.MIRRORED,
+    )
+    return [*turned, by_others]
 
 
 def _unseen(means: FloatArray, cells: Cells, fallback: FloatArray) -> _Group:

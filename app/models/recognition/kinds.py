@@ -23,3 +23,5 @@ class Disturbed(IntEnum):
     """Noise, or another speed."""
     CUT = 2
     """Any of the copies' disturbances, which include a lost start and end."""
+    MIRRORED = 3
+    """Left and right are exchanged, in the motion and in its task."""

@@ -37,7 +37,7 @@ from app.models.recognition.views import (
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.principal_axes import PrincipalAxes, principal_axes
 
-RECOGNIZER_VERSION = 5
+RECOGNIZER_VERSION = 6
 
 MOSTLY_REPEATED = 0.5
 """The takes of a library count as repeated if at least this share of its clips has another clip of

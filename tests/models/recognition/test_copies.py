@@ -7,6 +7,7 @@ from app.analysis.analyze import describe_for_search
 from app.errors import TooShort
 from app.models.recognition.copies import (
     CUTS,
+    DISTURBANCES,
     LIGHT,
     MAX_COPIED,
     CopiedClips,
@@ -17,7 +18,8 @@ from app.models.recognition.kinds import Disturbed
 from app.models.recognition.views import BothViews
 from tests.bodies import motion_of, walking, waving
 
-KINDS = len(LIGHT) + len(CUTS)
+KINDS = len(DISTURBANCES)
+NOT_MIRRORED = len(LIGHT) + len(CUTS)
 
 
 def described(positions: np.ndarray) -> np.ndarray:
@@ -30,9 +32,10 @@ def test_copies_are_nearer_to_their_clip_than_another_motion_is() -> None:
     copies = disturbed_copies(walk, seed=1)
     assert copies.shape == (KINDS, 1762)
     assert np.isfinite(copies).all()
-    apart = np.linalg.norm(copies - described(walk), axis=1)
+    same = copies[:NOT_MIRRORED]
+    apart = np.linalg.norm(same - described(walk), axis=1)
     assert (apart > 0).all()
-    assert apart.max() < np.linalg.norm(copies - described(wave), axis=1).min()
+    assert apart.max() < np.linalg.norm(same - described(wave), axis=1).min()
 
 
 def test_copies_are_the_same_for_a_seed() -> None:
@@ -44,7 +47,7 @@ def test_copies_are_the_same_for_a_seed() -> None:
 def test_a_copy_that_is_too_short_is_the_clip() -> None:
     brief = walking()[:3]
     copies = disturbed_copies(brief)
-    np.testing.assert_array_equal(copies[KINDS - 1], described(brief))
+    np.testing.assert_array_equal(copies[NOT_MIRRORED - 1], described(brief))
     with pytest.raises(TooShort):
         disturbed_copies(walking()[:1])
 
@@ -68,7 +71,7 @@ def copied_clips() -> CopiedClips:
 def test_moments_are_those_of_each_difference_summed_up() -> None:
     copied = copied_clips()
     for view, found in enumerate(copied.moments(np.array([0, 3, 4, 5]))):
-        for kind, last in ((Disturbed.LIGHTLY, len(LIGHT)), (Disturbed.CUT, KINDS)):
+        for kind, last in ((Disturbed.LIGHTLY, len(LIGHT)), (Disturbed.CUT, NOT_MIRRORED)):
             slow = [
                 np.outer(delta, delta)
                 for row, clip in ((1, 3), (2, 4))
@@ -79,6 +82,13 @@ def test_moments_are_those_of_each_difference_summed_up() -> None:
 
 def test_clips_without_copies_give_no_moments() -> None:
     assert copied_clips().moments(np.array([0, 2])) == ({}, {})
+
+
+def test_the_last_copy_is_mirrored() -> None:
+    copied = copied_clips()
+    clips, copies = copied.mirrored(np.array([0, 1, 4, 8]))
+    assert clips.tolist() == [1, 4, 8]
+    np.testing.assert_array_equal(copies.sample, copied.copies.sample[[0, 2, 3], -1])
 
 
 def test_each_copied_clip_gives_one_light_copy() -> None:

@@ -3,7 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.models.recognition.disturbances import faster, jitter, kept, noise
+from app.models.recognition.disturbances import faster, jitter, kept, mirrored, noise
+from app.motion.roles.joint_roles import JointRole
 from tests.bodies import motion_of, walking
 
 MOTION = motion_of(walking())
@@ -43,3 +44,12 @@ def test_faster_is_the_same_poses_in_less_time() -> None:
     quick = faster(1.25)(MOTION, 0)
     assert quick.duration == pytest.approx(MOTION.duration / 1.25)
     np.testing.assert_array_equal(quick.positions, MOTION.positions)
+
+
+def test_mirrored_sides_change_places() -> None:
+    turned = mirrored(MOTION, 0)
+    left, right = (MOTION.roles[role] for role in (JointRole.LEFT_HAND, JointRole.RIGHT_HAND))
+    np.testing.assert_array_equal(
+        turned.positions[:, left], MOTION.positions[:, right] * np.float32([-1, 1, 1])
+    )
+    np.testing.assert_array_equal(mirrored(turned, 0).positions, MOTION.positions)
