@@ -20,8 +20,8 @@ cells without using them:
   NEW_TASK, an error of prediction, is wider than that.
 
 Each is there once for clips as recorded and, with disturbed copies (app.models.recognition.copies),
-once for each kind of disturbance, whose covariance is added. SEEN and NEW_PERSON are there once
-more for mirrored clips (app.models.recognition.mirrored_cells). With it in the only covariance of a
+once for each kind of disturbance, whose covariance is added. SEEN is there once more for
+mirrored clips (app.models.recognition.mirrored_cells). With it in the only covariance of a
 hypothesis, new tasks of dataset 2 are told from known ones with an area under the curve of .955;
 without copies with .989; so with .994.
 """
@@ -186,7 +186,7 @@ def fit_hypotheses(
     recorded = [*seen, unseen, new_person, new_task, new_both]
     kinds = (disturbances or {}).items()
     disturbed = [group.after(what, moments) for what, moments in kinds for group in recorded]
-    others = _mirrored(mirrored, seen, differences) if mirrored and seen else []
+    others = _mirrored(mirrored, seen) if mirrored and seen else []
     return _whitened(recorded + disturbed + others)
 
 
@@ -219,10 +219,8 @@ def _seen(
     ]
 
 
-def _mirrored(
-    cells: MirroredCells, seen: list[_Group], differences: PersonDifferences
-) -> list[_Group]:
-    """SEEN and NEW_PERSON at the means of mirrored cells.
+def _mirrored(cells: MirroredCells, seen: list[_Group]) -> list[_Group]:
+    """SEEN at the means of mirrored cells.
 
     A mirrored cell is as wide as the recorded cell of its person and task. If there is none, it has
     the covariance of most cells and their median width.
@@ -236,7 +234,7 @@ def _mirrored(
     }
     found = [recorded.get(pair, width) for pair in zip(cells.person, cells.task, strict=True)]
     group, spread = (np.array(part) for part in zip(*found, strict=True))
-    turned = [
+    return [
         _Group(
             Kind.SEEN,
             cells.means[own],
@@ -249,18 +247,6 @@ def _mirrored(
         for each in np.unique(group)
         if len(own := np.flatnonzero(group == each))
     ]
-    nobody = np.full(len(cells.person), -1)
-    size = differences.size[cells.task]
-    by_others = _Group(
-        Kind.NEW_PERSON,
-        cells.means,
-        nobody,
-        cells.task,
-        differences.covariance,
-        size,
-        Disturbed.MIRRORED,
-    )
-    return [*turned, by_others]
 
 
 def _unseen(means: FloatArray, cells: Cells, fallback: FloatArray) -> _Group:
