@@ -20,10 +20,10 @@ cells without using them:
   NEW_TASK, an error of prediction, is wider than that.
 
 Each is there once for clips as recorded and, with disturbed copies (app.models.recognition.copies),
-once for each kind of disturbance, whose covariance is added. SEEN is there once more for
-mirrored clips (app.models.recognition.mirrored_cells). With it in the only covariance of a
+once for each kind of disturbance, whose covariance is added. With it in the only covariance of a
 hypothesis, new tasks of dataset 2 are told from known ones with an area under the curve of .955;
-without copies with .989; so with .994.
+without copies with .989; so with .994. SEEN is there once more for mirrored clips
+(app.models.recognition.mirrored_cells).
 """
 
 from __future__ import annotations
