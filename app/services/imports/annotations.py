@@ -55,7 +55,7 @@ class AnnotationFiles:
             if ending is not None:
                 stems[file.path[: -len(ending)]] = file
             elif is_table(file):
-                found._read_table(file)
+                found.read_table(file)
             else:
                 motions.add(posixpath.splitext(file.path)[0])
         found.beside = {stem: file for stem, file in stems.items() if stem in motions}
@@ -70,7 +70,8 @@ class AnnotationFiles:
         """The file of annotations beside a motion."""
         return self.beside.get(posixpath.splitext(motion.path)[0])
 
-    def _read_table(self, file: SourceFile) -> None:
+    def read_table(self, file: SourceFile) -> None:
+        """Add the rows of a table. Raises its problem, Unreadable, TooLarge."""
         if file.problem is not None:
             raise file.problem
         folder = file.path.rpartition("/")[0]

@@ -10,7 +10,6 @@ from kinedex.sent import UNSET, FileInput, Progress, Unset, corrections, given
 
 if TYPE_CHECKING:
     from kinedex.types.annotations import Annotation, Annotations, AnnotationSuggestions
-
     from kinedex.types.bodies import AcceptedSpan, NewAnnotation
     from kinedex.types.choices import AnnotationFormat
 
