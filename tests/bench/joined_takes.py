@@ -76,7 +76,6 @@ def real_takes() -> list[Take]:
     said = [frozenset(row["words"].split()) for row in rows]
     by_task = _shares(rows, said, lambda row: (_source(row), row["task"]))
     by_person = _shares(rows, said, lambda row: (_source(row), row["person"]))
-    columns = zip(rows, bodies, said, by_task, by_person, strict=True)
     return [
         Take(
             person=f"{_source(row)}|{row['person']}",
