@@ -3,12 +3,12 @@
 Run: pytest -m bench -s tests/bench/test_moments.py
 A third of the recordings is held out in turn: they are joined to long motions, twelve takes each
 with 0.6 s between them; the other clips teach the word model. Then each word that enough taught
-clips carry is looked for, as a search with scope "windows" does. A hit is relevant if it is the first that
-overlaps a moment (intersection at least half of the union). A word is true of all takes of a task
-if 15 % of them carry it, since each take was labeled by another annotator (`joined_takes`). The
-lengths of windows and RELATIVE were chosen with recordings held out, by these figures. The same with a third of the persons
-held out. All other hits count as wrong. By chance: the same number of moments, of the same lengths,
-anywhere.
+clips carry is looked for, as a search with scope "windows" does. A hit is relevant if it is the
+first that overlaps a moment (intersection at least half of the union). All other hits count as
+wrong. A word is true of all takes of a task if 15 % of them carry it, since each take was labeled
+by another annotator (`joined_takes`). The lengths of windows and RELATIVE were chosen with
+recordings held out, by these figures; so only those of a third of the persons, who are held out in
+turn too, chose nothing. By chance: moments of the same lengths, anywhere.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from fastapi import APIRouter, Depends, Query, Request, Response
 from starlette.datastructures import UploadFile
 
 from app.api.bodies import read_form, require_json, require_json_if_any, required
-from app.api.deps import Lib, reads_source, writes
+from app.api.deps import Lib, reads, reads_source, writes
 from app.api.guard.admission import changes, heavy, quick
 from app.api.guard.audited import exported
 from app.api.openapi import BINARY, AnnotationId, ClipId, body, refusals
@@ -126,7 +126,7 @@ def put_annotation_file(
 
 @router.get(
     "/suggestions",
-    dependencies=[reads_source, heavy],
+    dependencies=[reads, heavy],
     responses=refusals(404, ClipNotReady, ModelNotFitted),
 )
 def suggest_annotations(lib: Lib, clip_id: ClipId) -> AnnotationSuggestions:
