@@ -82,7 +82,7 @@ def test_a_query_has_the_same_arrays_as_a_stored_clip() -> None:
     query = describe_for_search(motion_of(BODIES["walk"])).arrays
     assert set(stored) - set(query) == {
         "keypose_frames", "pose_cover", "symbol_means", "symbol_variances", "symbol_transitions",
-        "keypose_thresholds", *SEGMENT_TYPES, *BEAT_ARRAYS,
+        "keypose_thresholds", WORD_WINDOWS, WORD_WINDOW_SPANS, *SEGMENT_TYPES, *BEAT_ARRAYS,
     }  # fmt: skip
     assert all(stored[name].tobytes() == query[name].tobytes() for name in query)
 
