@@ -131,6 +131,12 @@ class ClipNotFound(NotFound):
     code = "clip_not_found"
 
 
+class AnnotationNotFound(NotFound):
+    """The clip has no annotation with this id."""
+
+    code = "annotation_not_found"
+
+
 class JobNotFound(NotFound):
     """There is no job with this id."""
 

@@ -13,7 +13,8 @@ seconds, beat_facts (3,) float64 (see `rhythm`); keypose_frames (k,)
 int32, indices of the n frames; keypose_thresholds (2,) float64, the T1 and T2 that found them;
 pose_cover (p, 38), the frame, radius and vector of
 poses that represent all poses; segment_spans (s, 2) seconds, segment_vectors (s, 185)
-float16, segment_cycles (c, 3) int32. The motion symbol, with K states, has
+float16, segment_cycles (c, 3) int32. word_windows (w, 175) float16 and word_window_spans (w, 2)
+seconds (see `word_windows`). The motion symbol, with K states, has
 symbol_means (K, 26), symbol_variances (K, 26) and symbol_transitions (K, K).
 """
 
@@ -38,6 +39,7 @@ from app.analysis.descriptors.motion_volume import decompose
 from app.analysis.descriptors.movement_signs import movement_signs
 from app.analysis.descriptors.pose_cover import pose_cover
 from app.analysis.descriptors.windows import WINDOW_SCALES, window_arrays
+from app.analysis.descriptors.word_windows import word_window_arrays
 from app.analysis.energy.energy import energies
 from app.analysis.keyposes.keyposes import T1, T2, find_keyposes
 from app.analysis.measures import Measures, measure
@@ -55,7 +57,7 @@ from app.motion.skeleton.recording import Caution
 from app.numerics.arrays import FloatArray
 from app.numerics.tensors.rank1 import Rank1
 
-ANALYSIS_VERSION = 8
+ANALYSIS_VERSION = 9
 """Raise this number if the content of an array changes. Older clips are then analyzed again."""
 
 
@@ -97,6 +99,7 @@ def analyze(
         track = body_track(motion)
         parts = _Parts(smooth_track(motion))
         arrays: dict[str, NDArray[Any]] = {**_for_search(parts)}
+        arrays |= word_window_arrays(parts.track, symbol_features(parts.track))
     with times.stage("symbol"):
         arrays |= parts.symbol
     with times.stage("rhythm"):
@@ -129,8 +132,9 @@ def _of_start(motion: Motion) -> tuple[Caution, ...]:
 def describe_for_search(motion: Motion, names: Collection[str] | None = None) -> Analysis:
     """Compute only the arrays that search and recognition need.
 
-    Keyposes and the motion symbol, which is slow, are left out. names: the arrays to compute,
-    those of the symbol too; None computes all that search needs, in about 10 ms for 5 s of motion.
+    Keyposes, windows for words, and the motion symbol, which is slow, are left out. names: the
+    arrays to compute, those of the symbol too; None computes all that search needs, in about 10 ms
+    for 5 s of motion.
     Each array is the same as from `analyze`. Raises KeyError for a name that only `analyze`
     computes, and TooShort or NotHuman.
     """

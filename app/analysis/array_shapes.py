@@ -33,6 +33,8 @@ SHAPES: Mapping[str, tuple[int | None, ...]] = {
     "window_spans_2s": (None, 2),
     "window_vectors_4s": (None, 125),
     "window_spans_4s": (None, 2),
+    "word_windows": (None, 175),
+    "word_window_spans": (None, 2),
     "symbol_means": (None, 26),
     "symbol_variances": (None, 26),
     "symbol_transitions": (None, None),

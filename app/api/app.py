@@ -31,6 +31,7 @@ from app.api.metrics import install_metrics
 from app.api.routes import (
     alignment,
     audit,
+    clip_annotations,
     clip_views,
     clips,
     evaluations,
@@ -99,6 +100,7 @@ ROUTES = (
     clip_views,
     alignment,
     keyposes,
+    clip_annotations,
     low_dimensional,
     export,
     imports,

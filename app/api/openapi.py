@@ -100,6 +100,7 @@ ModelId = Annotated[str, _id("a recognizer", "MODEL_ID")]
 SignatureModelId = Annotated[str, _id("a multilinear model", "SIGNATURE_MODEL_ID")]
 EvaluationId = Annotated[str, _id("an evaluation", "EVALUATION_ID")]
 WebhookId = Annotated[str, _id("a webhook", "WEBHOOK_ID")]
+AnnotationId = Annotated[str, _id("an annotation of the clip", "ANNOTATION_ID")]
 
 
 def refusals(*answers: int | type[KinedexError]) -> dict[int | str, dict[str, Any]]:

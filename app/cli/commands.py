@@ -76,6 +76,11 @@ COMMANDS = {
         "export",
         "Export clips as BVH, GLB, NPZ, CSV, C3D (Z up) or TRC (for OpenSim).",
     ),
+    "annotations": CommandEntry(
+        "app.cli.annotations",
+        "program",
+        "Words and persons for parts of clips, with start and end.",
+    ),
     "backup": CommandEntry(
         "app.cli.backup",
         "backup",

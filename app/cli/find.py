@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -95,10 +96,8 @@ def search(
     """Find motions that are similar to a file or a stored clip, or motions for words."""
     if (query is None) == (not words):
         raise typer.BadParameter("give either a file or clip id, or --words")
-    if words and scope != "clips":
-        raise typer.BadParameter("--scope goes with a file or clip id, not with --words")
     fields: Any = filter_of(filter_json) or None
-    by_words: Any = {"mode": mode, "limit": limit, "filter": fields}
+    by_words: Any = {"mode": mode, "scope": scope, "limit": limit, "filter": fields}
     by_example: dict[str, Any] = {
         "method": method.value,
         "scope": scope,
@@ -118,15 +117,15 @@ def search(
         "up_axis": up_axis,
         "stack": stack,
     }
+    times = ("start", "end") if scope != "clips" else ()
     with open_client(context) as client:
         if query is None:
             found = client.search.words(words or [], **by_words)
-            _print_words(found, as_json, as_csv)
+            _print_words(found, times, as_json, as_csv)
             return
         with naming_missing(query, ADVICE):
             arguments = query_of(query, skeleton=skeleton, **by_example)
             hits = client.search.motion(**arguments)
-    times = ("start", "end") if scope != "clips" else ()
     print_hits(hits, times, as_json=as_json, as_csv=as_csv)
 
 
@@ -196,8 +195,8 @@ def _answer_text(answer: Answer) -> str:
     return f"unknown (nearest: {nearest})"
 
 
-def _print_words(hits: WordHits, as_json: bool, as_csv: bool) -> None:
-    print_hits(hits, (), as_json=as_json, as_csv=as_csv)
+def _print_words(hits: WordHits, times: Sequence[str], as_json: bool, as_csv: bool) -> None:
+    print_hits(hits, times, as_json=as_json, as_csv=as_csv)
     if as_json:
         return
     for word, used in hits.expanded.items():

@@ -8,6 +8,7 @@ import pytest
 from app.analysis.analyze import analyze, describe_for_search
 from app.analysis.array_shapes import SHAPES, is_usable
 from app.analysis.descriptors.windows import WINDOW_SCALES, window_frames
+from app.analysis.descriptors.word_windows import WORD_WINDOW_SPANS, WORD_WINDOWS
 from app.analysis.keyposes.keyposes import T1, T2
 from app.analysis.rhythm.rhythm import BEAT_ARRAYS
 from app.numerics.arrays import FloatArray
@@ -39,6 +40,7 @@ def test_arrays_are_finite_with_documented_shapes_and_types(body: FloatArray) ->
     windows = {scale: arrays.pop(scale.vectors) for scale in WINDOW_SCALES}
     spans = {scale: arrays.pop(scale.spans) for scale in WINDOW_SCALES}
     segments = {name: arrays.pop(name) for name in SEGMENT_TYPES}
+    words = {name: arrays.pop(name) for name in (WORD_WINDOWS, WORD_WINDOW_SPANS)}
     n, states = len(body), len(arrays["symbol_means"])
     shapes = {
         "role_positions": (n, 13, 3), "features_10hz": ((n - 1) // 3 + 1, 82),
@@ -62,6 +64,8 @@ def test_arrays_are_finite_with_documented_shapes_and_types(body: FloatArray) ->
     assert set(keyposes.tolist()) <= set(arrays["pose_cover"][:, 0].astype(int).tolist())
     assert {name: (a.dtype, a.shape[1]) for name, a in segments.items()} == SEGMENT_TYPES
     assert len(segments["segment_spans"]) == max(len(keyposes) - 1, 0)
+    assert words[WORD_WINDOWS].dtype == np.float16
+    assert words[WORD_WINDOW_SPANS].shape == (len(words[WORD_WINDOWS]), 2)
     for scale in WINDOW_SCALES:
         count = len(window_frames((n - 1) // 3 + 1, scale))
         assert (windows[scale].shape, windows[scale].dtype) == ((count, 125), np.float16)
@@ -78,7 +82,7 @@ def test_a_query_has_the_same_arrays_as_a_stored_clip() -> None:
     query = describe_for_search(motion_of(BODIES["walk"])).arrays
     assert set(stored) - set(query) == {
         "keypose_frames", "pose_cover", "symbol_means", "symbol_variances", "symbol_transitions",
-        "keypose_thresholds", *SEGMENT_TYPES, *BEAT_ARRAYS,
+        "keypose_thresholds", WORD_WINDOWS, WORD_WINDOW_SPANS, *SEGMENT_TYPES, *BEAT_ARRAYS,
     }  # fmt: skip
     assert all(stored[name].tobytes() == query[name].tobytes() for name in query)
 

@@ -99,6 +99,7 @@ def test_lists_searches_and_manifests_hold_only_its_clips(
 def test_clips_of_others_do_not_exist(lab: tuple[httpx2.Client, str, str]) -> None:
     client, own, other = lab
     views = ["", "/file", "/motion", "/descriptor", "/thumbnail.svg", "/keyposes", "/segments"]
+    views += ["/annotations", "/annotations/file"]
     views += ["/export?format=bvh", "/low-dimensional", "/animation.svg", "/symbol/motion"]
     for view in views:
         assert client.get(f"/v1/clips/{own}{view}").status_code == 200, view
@@ -169,5 +170,6 @@ def test_every_route_with_such_keys_is_known() -> None:
         *("get_thumbnail", "get_alignment", "get_keyposes", "get_segments", "get_low_dimensional"),
         *("get_animation", "get_export", "get_symbol_motion", "get_manifest"),
         *("get_self_similarity", "get_motion_volume"),
+        *("list_annotations", "get_annotation", "get_annotation_file", "get_annotation_table"),
         *("search_motion", "search_words", "search_pose", "search_parts"),
     }

@@ -89,13 +89,19 @@ def symbol_statistics(features: FloatArray, rate: float) -> FloatArray:
     length in seconds. On 496 held-out real clips, the quantiles add .013 to top-3 recognition,
     .008 to F and .010 to MAP (three foldings).
     """
-    change = np.zeros(features.shape[1])
-    if len(features) > 1:
-        change = np.abs(np.diff(features, axis=0)).mean(axis=0) * rate
-    low, high = np.quantile(features, EXTREMES, axis=0)
-    seconds = len(features) / rate
-    parts = [features.mean(axis=0), features.std(axis=0), change, low, high]
-    return np.concatenate([*parts, [np.log(seconds)]])
+    return np.asarray(statistics_of_parts(features[None], rate)[0])
+
+
+def statistics_of_parts(features: FloatArray, rate: float) -> FloatArray:
+    """(w, 131) the `symbol_statistics` of w parts of equal length, `features` (w, n, 26)."""
+    parts, frames, width = features.shape
+    change = np.zeros((parts, width))
+    if frames > 1:
+        change = np.abs(np.diff(features, axis=1)).mean(axis=1) * rate
+    low, high = np.quantile(features, EXTREMES, axis=1)
+    seconds = np.full((parts, 1), np.log(frames / rate))
+    found = [features.mean(axis=1), features.std(axis=1), change, low, high, seconds]
+    return np.hstack(found)
 
 
 def _limb_channels(local: FloatArray) -> FloatArray:

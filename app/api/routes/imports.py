@@ -34,6 +34,10 @@ the form. A manifest may be in any folder; its paths are relative to that folder
 - Any other column becomes metadata: strings, numbers, `true` or `false`. A column that is almost a
   field (`tsak`) is an error that names the field; `meta.tsak` is metadata in any case.
 
+Annotations of parts of a clip come as `kick.eaf` (ELAN) or `kick.babel.json` beside `kick.bvh`, or
+as rows of `annotations.csv` in any folder: `clip` (a path relative to that folder), `start`, `end`,
+`words`, `person`, `text`, `by`.
+
 Correct the manifest and import again: new values replace the old ones. If somebody edited a value
 since, it stays, and the file is `conflicting` with both values; `overwrite` replaces it. Files that
 are no motions, like `notes.txt`, are skipped.

@@ -23,6 +23,7 @@ from app.api.schemas.labels import (
     WordListQuery,
 )
 from app.search.index.filters import parse_filter
+from app.services.annotations.files import export_library
 from app.services.clips import discovery, labels, persons
 from app.services.clips.manifest_export import manifest
 from app.services.recognition import suggestions
@@ -140,4 +141,24 @@ def get_manifest(lib: Lib, query: Annotated[Filter, Query()]) -> StreamingRespon
         manifest(lib, filter),
         media_type="text/csv; charset=utf-8",
         headers={"Content-Disposition": 'attachment; filename="manifest.csv"'},
+    )
+
+
+@router.get(
+    "/annotations.csv",
+    dependencies=[reads_source, exported, quick],
+    response_class=StreamingResponse,
+    responses={
+        200: {
+            "content": {"text/csv": {"schema": {"type": "string"}}},
+            "description": "A table with a row for each annotation.",
+        }
+    },
+)
+def get_annotation_table(lib: Lib, query: Annotated[Filter, Query()]) -> StreamingResponse:
+    """The annotations of clips by path, as an `annotations.csv` that an import reads again."""
+    return StreamingResponse(
+        export_library(lib, parse_filter(query.given())),
+        media_type="text/csv; charset=utf-8",
+        headers={"Content-Disposition": 'attachment; filename="annotations.csv"'},
     )

@@ -157,6 +157,13 @@ class WordSearch(Incoming):
             "dimensions."
         ),
     )
+    scope: Literal["clips", "windows", "segments"] = Field(
+        "clips",
+        description="clips: whole clips are ranked. windows: moments are found, at any time in a "
+        "clip, with their start and end. segments: motions from one keypose to the next are "
+        "ranked. With windows and segments, `mode` is default, and a word with a minus leaves out "
+        "the times at which it is likelier than not.",
+    )
     limit: Limit = 10
     filter: Filter | None = None
     cursor: Cursor | None = None
@@ -166,6 +173,7 @@ class WordSearch(Incoming):
             "examples": [
                 {"words": ["an old man waves with his left hand", "-tired"]},
                 {"words": ["kick"], "mode": "cca"},
+                {"words": ["kick", "-left"], "scope": "windows"},
             ]
         }
     )
@@ -175,6 +183,7 @@ class WordSearch(Incoming):
         return WordQuery(
             words=self.words,
             mode=self.mode,
+            scope=self.scope,
             limit=self.limit,
             filter=None if self.filter is None else self.filter.given(),
             cursor=self.cursor,

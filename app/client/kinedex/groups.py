@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from kinedex.calls import alignment as calls_alignment
 from kinedex.calls import audit as calls_audit
+from kinedex.calls import clip_annotations as calls_clip_annotations
 from kinedex.calls import clip_views as calls_clip_views
 from kinedex.calls import clips as calls_clips
 from kinedex.calls import evaluations as calls_evaluations
@@ -53,6 +54,16 @@ class Clips(Group[SenderType]):
     keyposes = CallMethod(calls_keyposes.get_keyposes)
     name_keyposes = CallMethod(calls_keyposes.name_keyposes)
     forget_named_keyposes = CallMethod(calls_keyposes.forget_named_keyposes)
+    list_annotations = CallMethod(calls_clip_annotations.list_annotations)
+    add_annotation = CallMethod(calls_clip_annotations.add_annotation)
+    replace_annotations = CallMethod(calls_clip_annotations.replace_annotations)
+    annotation_file = CallMethod(calls_clip_annotations.get_annotation_file)
+    put_annotation_file = CallMethod(calls_clip_annotations.put_annotation_file)
+    suggest_annotations = CallMethod(calls_clip_annotations.suggest_annotations)
+    accept_annotations = CallMethod(calls_clip_annotations.accept_annotations)
+    annotation = CallMethod(calls_clip_annotations.get_annotation)
+    update_annotation = CallMethod(calls_clip_annotations.update_annotation)
+    delete_annotation = CallMethod(calls_clip_annotations.delete_annotation)
     low_dimensional = CallMethod(calls_low_dimensional.get_low_dimensional)
     low_dimensional_array = CallMethod(calls_low_dimensional.get_low_dimensional_array)
     animation = CallMethod(calls_low_dimensional.get_animation)
@@ -115,6 +126,7 @@ class Labels(Group[SenderType]):
     metadata = ListMethod(calls_labels.list_metadata)
     folders = ListMethod(calls_labels.list_folders)
     manifest = CallMethod(calls_labels.get_manifest)
+    annotation_table = CallMethod(calls_labels.get_annotation_table)
 
 
 class Studies(Group[SenderType]):

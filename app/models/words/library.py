@@ -207,30 +207,47 @@ class FittedWords:
     cca_points: FloatArray
 
 
+@dataclass(frozen=True, slots=True)
+class TaughtParts:
+    """M labeled parts of clips that teach the default model beside whole clips.
+
+    inputs: (M, p); label_sets: M; groups, persons: M, as those of clips.
+    """
+
+    inputs: FloatArray
+    label_sets: Sequence[Sequence[str]] = ()
+    groups: Sequence[str] = ()
+    persons: Sequence[str] = ()
+
+
+NO_PARTS = TaughtParts(np.zeros((0, 0)))
+
+
 def fit_library_words(
     symbols: Sequence[GaussianHMM],
     inputs: FloatArray,
     label_sets: Sequence[Sequence[str]],
     groups: Sequence[str] | None = None,
     persons: Sequence[str] | None = None,
+    parts: TaughtParts = NO_PARTS,
     *,
     seed: int = 0,
 ) -> FittedWords:
     """Fit on all clips: symbols N, inputs (N, p) of the model, label sets N (empty: not labeled).
 
     groups: N, equal for files of one recording, so that copies do not bias the calibration;
-    persons: N, equal for clips of one person of one source, see `calibrate`.
+    persons: N, equal for clips of one person of one source, see `calibrate`. parts: have no motion
+    symbols, so they do not teach the correlated spaces.
 
-    Deterministic for a seed. Raises NotEnoughLabels if no clip has words.
+    Deterministic for a seed. Raises NotEnoughLabels if no clip and no part has words.
     """
-    vocabulary = WordVocabulary.of(label_sets)
+    vocabulary = WordVocabulary.of([*label_sets, *parts.label_sets])
     labels = vocabulary.label_matrix(label_sets)
     labeled = np.flatnonzero(labels.any(axis=1))
     rows, truth = np.asarray(inputs)[labeled], labels[labeled]
-    model = fit_word_model(rows, truth, seed=seed)
     own = [str(row) if groups is None else groups[row] for row in labeled]
     who = None if persons is None else [persons[row] for row in labeled]
-    calibration = calibrate(model, rows, truth, own, who, seed=seed)
+    model, calibration = _default_model(vocabulary, (rows, truth, own, who), parts, seed)
     dimensions = possible_dimensions(CANDIDATES, len(symbols))
     spaces = dict(zip(dimensions, fit_symbol_spaces(symbols, dimensions, seed=seed), strict=True))
     distances = symbol_distances(symbols, spaces[DIMENSIONS].landmarks)
@@ -250,6 +267,24 @@ def fit_library_words(
         vocabulary, model, calibration, spaces[DIMENSIONS], spaces[chosen], cca, printed, losses
     )
     return FittedWords(words, points[DIMENSIONS], points[chosen])
+
+
+_Labeled = tuple[FloatArray, FloatArray, list[str], list[str] | None]
+"""Inputs (n, p), labels (n, V), groups n, and persons n or None."""
+
+
+def _default_model(
+    vocabulary: WordVocabulary, clips: _Labeled, parts: TaughtParts, seed: int
+) -> tuple[WordModel, WordCalibration]:
+    """The default model and its calibration, taught by clips and by parts of clips."""
+    rows, truth, own, who = clips
+    if parts.label_sets:
+        rows = np.vstack([rows, parts.inputs])
+        truth = np.vstack([truth, vocabulary.label_matrix(parts.label_sets)])
+        own = [*own, *parts.groups]
+        who = None if who is None else [*who, *parts.persons]
+    model = fit_word_model(rows, truth, seed=seed)
+    return model, calibrate(model, rows, truth, own, who, seed=seed)
 
 
 def _part(arrays: Mapping[str, np.ndarray[Any, Any]], part: str) -> Arrays:

@@ -1,10 +1,10 @@
 """Forgetting a person: gait identifies people, so that a library must be able to forget them.
 
 One transaction removes the person's label from every clip, the name from whatever else names the
-person (`traces`: names and paths of files, metadata, lists of imported files), every evaluation
-that names the person, and every model that holds persons: after it no search and no recognition
-knows the person. A job fits the models again without them; until it is done, whatever needs those
-models asks the client to wait. Files keep their content.
+person (`traces`: names and paths of files, metadata, annotations, lists of imported files), every
+evaluation that names the person, and every model that holds persons: after it no search and no
+recognition knows the person. A job fits the models again without them; until it is done, whatever
+needs those models asks the client to wait. Files keep their content.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from app.services.library.fitted_models import ModelKind, holds_persons
 from app.services.library.library import Library
 from app.services.training.models import enqueue_fit
 from app.store import audit, evaluations, keyed_calls, models
-from app.store.clips import labels
+from app.store.clips import clip_annotations, labels
 from app.store.clips import repository as clips
 from app.store.database.engine import Tx
 from app.store.jobs.record import JobRecord
@@ -41,7 +41,8 @@ def forget_person(lib: Library, name: str) -> JobRecord:
 
 
 def _forget(tx: Tx, person: str) -> JobRecord:
-    if person not in labels.person_names(tx) | models.person_names(tx):
+    known = labels.person_names(tx) | models.person_names(tx) | clip_annotations.person_names(tx)
+    if person not in known:
         raise NotFound(
             "No clip carries this person.", places=[Place("name", "is not in the library")]
         )

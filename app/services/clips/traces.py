@@ -5,7 +5,8 @@ equals the name is removed, and a folder of the path or a part of the source tha
 replaced: no other text, because a name can be a common word too, and the person "Max" is not in
 `max_speed.bvh`. In lists of imported files, a name with a letter is replaced wherever it is.
 Metadata and captions that hold the name are removed from all clips; a name without a letter, only
-from those of the person, and where the whole value equals it.
+from those of the person, and where the whole value equals it. The same holds for the sentences of
+annotations; who moves in them or made them is removed where it equals the name.
 """
 
 from __future__ import annotations
@@ -15,7 +16,8 @@ from dataclasses import replace
 from typing import Any
 
 from app.services.clips.anonymize import NameRemover
-from app.store.clips import texts
+from app.store.clips import clip_annotations, texts
+from app.store.clips.clip_annotations import Annotation
 from app.store.clips.metadata_values import as_text
 from app.store.clips.record import META
 from app.store.clips.texts import ClipTexts
@@ -28,6 +30,8 @@ def remove_name(tx: Tx, person: str, clip_ids: Collection[str]) -> None:
     remover, own = NameRemover(person), frozenset(clip_ids)
     cleaned = ((clip, _cleaned(remover, clip, clip.id in own)) for clip in texts.read(tx))
     texts.write(tx, [(before, now) for before, now in cleaned if before != now])
+    said = [(one, _unnamed(remover, one, one.clip_id in own)) for one in clip_annotations.every(tx)]
+    clip_annotations.rewrite(tx, [now for before, now in said if before != now])
 
     def in_import(clip_id: str | None, value: Any) -> Any:
         return remover.in_json(value) if remover.has_letter or clip_id in own else value
@@ -62,6 +66,18 @@ def _cleaned(remover: NameRemover, clip: ClipTexts, is_own: bool) -> ClipTexts:
         changed,
         path=None if clip.path is None else remover.without_parts(clip.path),
         source=None if clip.source is None else remover.without_parts(clip.source),
+    )
+
+
+def _unnamed(remover: NameRemover, one: Annotation, is_own: bool) -> Annotation:
+    """An annotation without the name."""
+    is_his = is_own or (one.person is not None and remover.is_name(one.person))
+    return replace(
+        one,
+        words=tuple(word for word in one.words if not remover.is_name(word)),
+        person=None if one.person and remover.is_name(one.person) else one.person,
+        text=None if one.text and _is_named(remover, one.text, is_his) else one.text,
+        by=None if one.by and remover.is_name(one.by) else one.by,
     )
 
 

@@ -56,7 +56,7 @@ def find_motion(lib: Library, query: MotionQuery) -> Hits:
 
 
 def find_words(lib: Library, query: WordQuery, clips: LabelView | None = None) -> Hits:
-    """Clips in order of how well words describe them.
+    """Clips, or parts of clips, in order of how well words describe them.
 
     clips: a view of the index, by default the present one. Words that the model does not know are
     left out, and reported in the result.
@@ -64,26 +64,34 @@ def find_words(lib: Library, query: WordQuery, clips: LabelView | None = None) -
     """
     # Imported here, so that a search by example does not load the modules of words.
     from app.services.find.by_words import rank_by_words
+    from app.services.find.words_in_parts import find_words_in_parts
 
     began = time.perf_counter()
     clip_filter = as_filter(query.filter)
     texts, mode = fields.queried_words(query.words), word_mode(query.mode)
     fields.limit(query.limit)
+    if query.scope not in SCOPES:
+        raise fields.bad_field("scope", f"must be one of {', '.join(SCOPES)}")
     version = lib.index.catch_up(lib.store)
-    clips = clips or lib.index.state[1].labels
-    found = rank_by_words(lib, clips, texts, mode, clip_filter)
-    question = cursors.digest("words", *texts, mode, clip_filter, found.model)
-    paging = Paging.at(query.cursor, question, query.clip_fields)
-    page = _page(lib, found.ranking, paging, query.limit, found.to_score)
+    if query.scope == "clips":
+        clips = clips or lib.index.state[1].labels
+        found = rank_by_words(lib, clips, texts, mode, clip_filter)
+        question = cursors.digest("words", *texts, mode, clip_filter, found.model)
+        paging = Paging.at(query.cursor, question, query.clip_fields)
+        asked = found.asked
+        page = _page(lib, found.ranking, paging, query.limit, found.to_score)
+    else:
+        parts = find_words_in_parts(lib, query, texts, clip_filter)
+        asked, page = parts.asked, parts.page
     return Hits(
         method=mode,
         took_ms=milliseconds_since(began),
         library_version=version,
         items=page.items,
         next=page.next,
-        unknown_words=found.asked.unknown,
-        expanded=dict(found.asked.expanded),
-        confidence=dict(found.asked.confidence),
+        unknown_words=asked.unknown,
+        expanded=dict(asked.expanded),
+        confidence=dict(asked.confidence),
     )
 
 

@@ -57,11 +57,13 @@ class WordQuery:
     """A search by words: its mode is one of WORD_MODES.
 
     words: words, phrases or sentences; a word with a minus before it (-left) excludes the clips
-    that carry it; clip_fields: as in `MotionQuery`.
+    that carry it; scope: "clips"; "windows" finds moments, at any time in a clip; "segments" finds
+    motions from one keypose to the next; clip_fields: as in `MotionQuery`.
     """
 
     words: Sequence[str]
     mode: str = "default"
+    scope: str = "clips"
     limit: int = DEFAULT_LIMIT
     filter: Filter = None
     cursor: str | None = None

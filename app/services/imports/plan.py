@@ -1,5 +1,5 @@
-"""The plan of an import: which files are motions, and the manifest row, skeleton and recording of
-each.
+"""The plan of an import: which files are motions, and the manifest row, skeleton, recording and
+annotations of each.
 
 A manifest describes motions and names their recordings. An ASF file is the skeleton of the AMC
 files that `skeleton_pairs` finds for it. This module reads manifests only.
@@ -8,13 +8,15 @@ files that `skeleton_pairs` finds for it. This module reads manifests only.
 from __future__ import annotations
 
 import heapq
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from app.errors import BadContent, TooLarge, Unreadable
+from app.formats.annotations.span import Span
 from app.kinedex_error import KinedexError, Place
 from app.services.fields import MAX_PATH, bad_field
 from app.services.fields import path as clip_path
+from app.services.imports.annotations import AnnotationFiles, is_table
 from app.services.imports.manifest import Manifest, ManifestRow
 from app.services.imports.manifest_table import MANIFEST_NAME, ManifestLimits
 from app.services.imports.options import ImportOptions
@@ -28,12 +30,17 @@ MAX_ABSENT_LISTED = 100
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """A motion file of an import, with its manifest row, skeleton file and recording."""
+    """A motion file of an import, with its manifest row, skeleton file and recording.
+
+    beside: a file of its annotations; spans: those of tables.
+    """
 
     file: SourceFile
     row: ManifestRow
     skeleton: SourceFile | None
     sound: SourceFile | None
+    beside: SourceFile | None = None
+    spans: Sequence[Span] = ()
 
 
 class Plan:
@@ -53,20 +60,21 @@ class Plan:
     ) -> None:
         """Sort the files into motions and their companions.
 
-        Raises Unreadable and TooLarge for a bad manifest, a manifest file's own problem, and
-        BadField for bad options, or a pattern that matches no motion.
+        Raises Unreadable and TooLarge for a bad manifest or table of annotations, a manifest
+        file's own problem, and BadField for bad options, or a pattern that matches no motion.
         """
         self.options = options or ImportOptions()
         self._by_path = {file.path: file for file in _with_unique_paths(files)}
         self._manifest = Manifest(limits, self.options)
         _read_manifests(self._manifest, self._by_path.values())
         self._skeletons = pair_skeletons(self._by_path)
+        self._annotations = AnnotationFiles.among(self._by_path.values())
         recordings = self._manifest.recordings()
-        taken = {*self._skeletons.values(), *recordings}
+        taken = {*self._skeletons.values(), *recordings, *self._annotations.paths}
         self.motions = tuple(
             file
             for file in self._by_path.values()
-            if not _is_manifest(file) and file.path not in taken
+            if not (_is_manifest(file) or is_table(file)) and file.path not in taken
         )
         self.paths = frozenset(filter(None, map(_clip_path, self.motions)))
         self.unmatched = self._count_unmatched()
@@ -85,7 +93,7 @@ class Plan:
         return len(motions) - matched
 
     def item(self, motion: SourceFile) -> Item:
-        """A motion with its manifest row, skeleton and recording."""
+        """A motion with its manifest row, skeleton, recording and annotations."""
         row = self._manifest.row(motion.path)
         skeleton = self._skeletons.get(motion.path)
         return Item(
@@ -93,6 +101,8 @@ class Plan:
             row,
             None if skeleton is None else self._by_path[skeleton],
             self._by_path.get(row.audio or ""),
+            self._annotations.of(motion),
+            self._annotations.rows.get(motion.path, ()),
         )
 
 

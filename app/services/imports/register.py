@@ -14,15 +14,18 @@ from app.errors import Canceled, LeaseLost, StorageError
 from app.formats.sniff import HEAD_BYTES, TAIL_BYTES, sniff
 from app.kinedex_error import KinedexError
 from app.services import fields
+from app.services.annotations.checks import of_spans
 from app.services.clips.catalogue import BULK_PRIORITY, Created, add, check_content, keep
 from app.services.clips.merging import OnConflict
 from app.services.clips.recordings import attached
+from app.services.imports.annotations import put_annotations, read_beside
 from app.services.imports.keyposes import put_keyposes
 from app.services.imports.plan import Item, Plan
 from app.services.imports.skipped import is_skipped, refuse_companion
 from app.services.imports.sources import SourceFile
 from app.services.library.library import Library
 from app.store.clips import repository as clips
+from app.store.clips.clip_annotations import NewAnnotation
 from app.store.clips.record import ClipState, Difference, NewClip
 from app.store.database.engine import Tx
 from app.store.files.files import Readable, StagedFile
@@ -160,13 +163,31 @@ class ImportRun:
                 path=fields.path(path),
                 sent=row.values.sent,
             )
+            said = self._annotations_of(item)
             with lib.store.write() as tx:
                 keep(staged, companion, recording)
-                self._record(tx, self._added(tx, new, row.keyposes, path))
+                self._record(tx, self._added(tx, new, row.keyposes, said, path))
         self._problems = []
 
+    def _annotations_of(self, item: Item) -> tuple[NewAnnotation, ...] | None:
+        """The annotations of a motion in the import; None if it has none.
+
+        A bad file of annotations is a problem of its own: the motion is stored without it.
+        """
+        if item.beside is not None:
+            try:
+                return read_beside(item.beside)
+            except KinedexError as problem:
+                self._add_problem(item.beside.path, problem)
+        return of_spans(item.spans, None) if item.spans else None
+
     def _added(
-        self, tx: Tx, new: NewClip, keyposes: tuple[float, ...] | None, path: str
+        self,
+        tx: Tx,
+        new: NewClip,
+        keyposes: tuple[float, ...] | None,
+        said: tuple[NewAnnotation, ...] | None,
+        path: str,
     ) -> NewEntry:
         """Add the clip of a file, or merge its labels with those of the clip that exists."""
         is_twin = self._is_recorded(tx, new)
@@ -177,6 +198,9 @@ class ImportRun:
         clip, differences = created.clip, created.differences
         if keyposes is not None:
             found = put_keyposes(tx, clip, keyposes, policy)
+            differences += () if created.is_new else found
+        if said is not None:
+            found = put_annotations(tx, clip, said, policy)
             differences += () if created.is_new else found
         outcome = _outcome(created, differences, is_twin)
         return NewEntry(path, outcome, clip_id=clip.id, differences=differences)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Self
 
 from app.analysis.descriptors.windows import WIDTH, WINDOW_SCALES
+from app.analysis.descriptors.word_windows import INPUT_WIDTH, WORD_WINDOW_SPANS, WORD_WINDOWS
 from app.analysis.segments.segments import SEGMENT_SPANS, SEGMENT_VECTORS, SEGMENT_WIDTH
 from app.config import Settings
 from app.search.index.array_cache import ArrayCache
@@ -14,6 +15,7 @@ from app.search.index.model_rows import ModelRows
 from app.search.index.projected_index import ProjectedIndex
 from app.search.index.vector_index import PACED_VECTORS, VectorIndex
 from app.search.pose.by_pose import POSES
+from app.search.windows.part_scores import PartScores
 from app.search.windows.parts import parts_layout
 from app.services.library.analysis_pool import AnalysisPool, Limits
 from app.services.library.fitted_models import METRICS, FittedModels, ModelKind
@@ -35,7 +37,8 @@ class Library:
     again. word_scores, symbol_points, cca_points: the outputs of the word models for the indexed
     clips. pool: analyzes uploaded queries; a worker has its own pool. windows: the windows of all
     clips, by the name of their scale; segments: the segments of all clips; poses: the pose covers
-    of all clips; the first search that needs paced or one of these three loads it. metrics: the
+    of all clips; word_windows: the windows in which words are looked for, and window_words: their
+    probabilities; the first search that needs paced or one of these four loads it. metrics: the
     clips' coordinates in each learned metric.
     """
 
@@ -53,6 +56,8 @@ class Library:
     windows: Mapping[str, VectorIndex]
     segments: VectorIndex
     poses: VectorIndex
+    word_windows: VectorIndex
+    window_words: PartScores
     metrics: Mapping[ModelKind, ProjectedIndex]
 
     @classmethod
@@ -89,6 +94,10 @@ class Library:
                 layout=parts_layout(SEGMENT_VECTORS, SEGMENT_SPANS, SEGMENT_WIDTH)
             ),
             poses=VectorIndex(layout=POSES),
+            word_windows=VectorIndex(
+                layout=parts_layout(WORD_WINDOWS, WORD_WINDOW_SPANS, INPUT_WIDTH)
+            ),
+            window_words=PartScores(),
             metrics={kind: ProjectedIndex(index) for kind in METRICS},
         )
 

@@ -129,6 +129,7 @@ def _fit_words(training: TrainingSet, before: Before) -> Fit:
         training.label_sets,
         training.groups,
         training.strangers,
+        training.taught_parts,
     )
     # Meanings are looked up once, since a look-up is slow: the model before has them already.
     earlier = Meanings.from_meta(before.meta.get("meanings", {}))

@@ -13,11 +13,13 @@ from app.models.metric.learned_metric import INPUTS, ClipDescriptors
 from app.models.recognition.copies import ClipCopies, disturbed_copies, evenly_chosen
 from app.models.recognition.views import full_samples
 from app.models.words.language.captions import with_caption_words
+from app.models.words.library import TaughtParts
 from app.motion.roles.joint_roles import ESSENTIAL_ROLES
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm.model import GaussianHMM
 from app.search.index import usable_arrays
 from app.services.library.synthesized import SYNTHESIZED, is_synthesized
+from app.services.training.taught_spans import NO_SPANS, TaughtSpans, read_taught_spans
 from app.store.clips import listing as clip_listing
 from app.store.clips import repository as clips
 from app.store.clips import versions as library
@@ -41,7 +43,7 @@ class TrainingSet:
     samples: (N, 1250); vectors: (N, 128); wide: (N, 512); angles: (642,) by clip id, missing for
     clips of an analysis without joint angles; positions: (n, 13, 3) meters, by the id of the clips
     that are copied (app.models.recognition.copies); is_anonymous: the set has no persons, since
-    persons must not be recognized.
+    persons must not be recognized; spans: the annotated parts of the clips.
     """
 
     library_version: int
@@ -56,6 +58,7 @@ class TrainingSet:
     angles: Mapping[str, FloatArray] = field(default_factory=dict)
     positions: Mapping[str, FloatArray] = field(default_factory=dict)
     is_anonymous: bool = False
+    spans: TaughtSpans = NO_SPANS
 
     def __len__(self) -> int:
         return len(self.clips)
@@ -67,14 +70,33 @@ class TrainingSet:
 
     @property
     def tasks(self) -> Sequence[str | None]:
-        """(N,) the task of each clip."""
-        return [clip.task for clip in self.clips]
+        """(N,) the task of each clip; None for a clip whose parts have words."""
+        in_parts = self.spans.in_parts
+        return [None if clip.id in in_parts else clip.task for clip in self.clips]
 
     @property
     def label_sets(self) -> Sequence[tuple[str, ...]]:
-        """(N,) the words of each clip, and those of its captions."""
-        words = [clip.words for clip in self.clips]
-        return with_caption_words(words, [clip.captions for clip in self.clips])
+        """(N,) the words of each clip, and those of its captions; none if its parts have words."""
+        whole = [clip.id not in self.spans.in_parts for clip in self.clips]
+        words = [clip.words if own else () for clip, own in zip(self.clips, whole, strict=True)]
+        texts = [clip.captions if own else () for clip, own in zip(self.clips, whole, strict=True)]
+        return with_caption_words(words, texts)
+
+    @property
+    def taught_parts(self) -> TaughtParts:
+        """The annotated parts of the clips, for the word model."""
+        place = {clip.id: number for number, clip in enumerate(self.clips)}
+        rows = [place[clip_id] for clip_id in self.spans.clip_ids]
+        who = [None if self.is_anonymous else person for person in self.spans.persons]
+        return TaughtParts(
+            inputs=self.spans.inputs,
+            label_sets=self.spans.label_sets,
+            groups=[self.groups[row] for row in rows],
+            persons=[
+                self.groups[row] if person is None else f"{self.clips[row].source}|{person}"
+                for row, person in zip(rows, who, strict=True)
+            ],
+        )
 
     @property
     def word_inputs(self) -> FloatArray:
@@ -141,6 +163,7 @@ def read_training_set(store: Store, filter: ClipFilter = READY) -> TrainingSet:
         records = clips.get_many(tx, whole)
         angles = usable_arrays.get_many(tx, whole, ANGLES)
         whole = [clip_id for clip_id in whole if _teaches(records[clip_id])]
+        spans = read_taught_spans(tx, {clip_id: records[clip_id] for clip_id in whole})
         copied = [whole[i] for i in evenly_chosen(len(whole))]
         positions = usable_arrays.get_many(tx, copied, POSITIONS)
     return TrainingSet(
@@ -158,6 +181,7 @@ def read_training_set(store: Store, filter: ClipFilter = READY) -> TrainingSet:
         wide=_stacked([found[WIDE][clip_id] for clip_id in whole]),
         angles=angles,
         positions=positions,
+        spans=spans,
     )
 
 

@@ -145,6 +145,23 @@ keypose_annotations = Table(
     Column("annotated_at", UtcDateTime, nullable=False),
 )
 
+# Spans of clips with words: what people and models say about parts.
+clip_annotations = Table(
+    "clip_annotations",
+    metadata,
+    Column("id", String, primary_key=True),
+    clip_key(nullable=False, index=True),
+    Column("start_s", Float, nullable=False),
+    Column("end_s", Float, nullable=False),
+    json_column("words", nullable=False),
+    Column("person", String, index=True),
+    Column("text", String),
+    Column("said_by", String),
+    Column("origin", String, nullable=False),
+    Column("probability", Float),
+    Column("changed_at", UtcDateTime, nullable=False),
+)
+
 jobs = Table(
     "jobs",
     metadata,

@@ -44,6 +44,10 @@ def start_import(
     almost a field (`tsak`) is an error that names the field; `meta.tsak` is metadata in any
     case.
 
+    Annotations of parts of a clip come as `kick.eaf` (ELAN) or `kick.babel.json` beside
+    `kick.bvh`, or as rows of `annotations.csv` in any folder: `clip` (a path relative to that
+    folder), `start`, `end`, `words`, `person`, `text`, `by`.
+
     Correct the manifest and import again: new values replace the old ones. If somebody edited a
     value since, it stays, and the file is `conflicting` with both values; `overwrite` replaces
     it. Files that are no motions, like `notes.txt`, are skipped.

@@ -157,6 +157,7 @@ def search_words(
     *,
     fields: Sequence[str] | None = None,
     mode: Literal["default", "cca", "printed"] | None = None,
+    scope: Literal["clips", "windows", "segments"] | None = None,
     limit: int | None = None,
     filter: Filter | Mapping[str, Any] | None = None,
     cursor: str | None = None,
@@ -175,6 +176,10 @@ def search_words(
         and with as many dimensions as predict held-out words best. printed: by the distance in
         that space as Takano printed it, with the pseudo-inverse and 10 dimensions. Default:
         default.
+    scope: clips: whole clips are ranked. windows: moments are found, at any time in a clip, with
+        their start and end. segments: motions from one keypose to the next are ranked. With
+        windows and segments, `mode` is default, and a word with a minus leaves out the times at
+        which it is likelier than not. Default: clips.
     limit: Maximum number of items in one answer. Default: 10.
     """
     from kinedex.types.search import WordHits
@@ -185,7 +190,7 @@ def search_words(
         "/v1/search/words",
         record(WordHits),
         query=given(fields=fields),
-        json=given(words=words, mode=mode, limit=limit, filter=filter, cursor=cursor),
+        json=given(words=words, mode=mode, scope=scope, limit=limit, filter=filter, cursor=cursor),
     )
 
 

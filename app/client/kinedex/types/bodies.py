@@ -6,6 +6,17 @@ from collections.abc import Sequence
 from typing import NotRequired, TypedDict
 
 
+class AcceptedSpan(TypedDict):
+    """The part of a suggestion that is accepted.
+
+    start: Start of the part, seconds from the start of the clip.
+    end: End of the part, seconds.
+    """
+
+    start: float
+    end: float
+
+
 class Filter(TypedDict):
     """Filters of the clips before they are ranked. A clip must pass all given filters.
 
@@ -61,6 +72,25 @@ class Filter(TypedDict):
     max_energy: NotRequired[float | None]
     min_tempo: NotRequired[float | None]
     max_tempo: NotRequired[float | None]
+
+
+class NewAnnotation(TypedDict):
+    """What is said about a part of a clip. It has words, a person or a text.
+
+    start: Start of the part, seconds from the start of the clip.
+    end: End of the part, seconds.
+    words: What happens in the part. A phrase is one word, joined by underscores (`left_leg`).
+    person: Who moves in the part, if it is not the person of the clip.
+    text: A sentence that describes the part.
+    by: Who said it.
+    """
+
+    start: float
+    end: float
+    words: NotRequired[Sequence[str]]
+    person: NotRequired[str | None]
+    text: NotRequired[str | None]
+    by: NotRequired[str | None]
 
 
 class SearchExample(TypedDict):

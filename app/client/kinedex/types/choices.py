@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Literal, TypeAlias
 
+AnnotationFormat: TypeAlias = Literal["csv", "eaf", "babel"]
+
+
 Basis: TypeAlias = Literal["keypose", "uniform"]
 
 

@@ -1,0 +1,1 @@
+"""Annotations of clips in time: kept, imported, exported and suggested."""
