@@ -33,6 +33,7 @@ from app.api.routes import (
     audit,
     clip_views,
     clips,
+    edits,
     evaluations,
     export,
     health,
@@ -96,6 +97,7 @@ Times are ISO 8601 in UTC, durations seconds. Every failure is a problem (RFC 94
 ROUTES = (
     clips,
     recordings,
+    edits,
     clip_views,
     alignment,
     keyposes,

@@ -53,6 +53,11 @@ COMMANDS = {
         "Synthesize a motion that a person never recorded, as a BVH file, and report its quality.",
     ),
     "clips": CommandEntry("app.cli.clips", "program", "List, show, label and delete stored clips."),
+    "edit": CommandEntry(
+        "app.cli.edit",
+        "edit",
+        "Make a new clip from a clip: cut, mirrored, at another rate, in place, or as a loop.",
+    ),
     "jobs": CommandEntry(
         "app.cli.jobs", "program", "List, show and cancel work in the background."
     ),

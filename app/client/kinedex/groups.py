@@ -6,6 +6,7 @@ from kinedex.calls import alignment as calls_alignment
 from kinedex.calls import audit as calls_audit
 from kinedex.calls import clip_views as calls_clip_views
 from kinedex.calls import clips as calls_clips
+from kinedex.calls import edits as calls_edits
 from kinedex.calls import evaluations as calls_evaluations
 from kinedex.calls import export as calls_export
 from kinedex.calls import health as calls_health
@@ -43,6 +44,7 @@ class Clips(Group[SenderType]):
     file = CallMethod(calls_clips.get_file)
     audio = CallMethod(calls_recordings.get_audio)
     delete_audio = CallMethod(calls_recordings.delete_audio)
+    edit = CallMethod(calls_edits.edit_clip)
     motion = CallMethod(calls_clip_views.get_motion)
     motion_array = CallMethod(calls_clip_views.get_motion_array)
     descriptor = CallMethod(calls_clip_views.get_descriptor)

@@ -14,6 +14,7 @@ METHODS = {
     "list_clips": "clips.list",
     "start_import": "clips.upload_archive",
     "update_clip": "clips.update",
+    "edit_clip": "clips.edit",
     "cancel_or_delete_job": "jobs.cancel",
     "list_files": "jobs.files",
     "list_jobs": "jobs.list",

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NotRequired, TypedDict
 
+from kinedex.types.choices import EditKind
+
 
 class Filter(TypedDict):
     """Filters of the clips before they are ranked. A clip must pass all given filters.
@@ -77,3 +79,24 @@ class SearchExample(TypedDict):
     end: NotRequired[float | None]
     weight: NotRequired[float]
     against: NotRequired[bool]
+
+
+class Step(TypedDict):
+    """One step of an edit.
+
+    kind: cut: keep the part from `start` to `end`. mirror: exchange left and right, also in the
+    labels. resample: another frame rate, `fps`. in_place: remove the horizontal path of the
+    hips. loop: keep the best loop, with its end blended into its beginning.
+    start: Of a cut: seconds of the motion before this step; default: its start.
+    end: Of a cut: seconds; default: the end.
+    fps: Of resample: frames per second.
+    min_seconds: Of a loop: the shortest; default: 0.5 s.
+    max_seconds: Of a loop: the longest; default: any.
+    """
+
+    kind: EditKind
+    start: NotRequired[float | None]
+    end: NotRequired[float | None]
+    fps: NotRequired[float | None]
+    min_seconds: NotRequired[float | None]
+    max_seconds: NotRequired[float | None]

@@ -13,6 +13,9 @@ Choice: TypeAlias = Literal["left", "right", "same"]
 ClipState: TypeAlias = Literal["queued", "processing", "ready", "failed"]
 
 
+EditKind: TypeAlias = Literal["cut", "mirror", "resample", "in_place", "loop"]
+
+
 EvaluationKind: TypeAlias = Literal[
     "recognition", "retrieval", "words", "keyposes", "low-dimensional", "symbols"
 ]
