@@ -99,6 +99,9 @@ PairId = Annotated[str, _id("a pair", "PAIR_ID")]
 ModelId = Annotated[str, _id("a recognizer", "MODEL_ID")]
 SignatureModelId = Annotated[str, _id("a multilinear model", "SIGNATURE_MODEL_ID")]
 EvaluationId = Annotated[str, _id("an evaluation", "EVALUATION_ID")]
+CollectionId = Annotated[str, _id("a collection", "COLLECTION_ID")]
+ItemId = Annotated[str, _id("an item of it", "ITEM_ID")]
+SearchId = Annotated[str, _id("a saved search", "SEARCH_ID")]
 WebhookId = Annotated[str, _id("a webhook", "WEBHOOK_ID")]
 
 

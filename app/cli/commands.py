@@ -58,6 +58,12 @@ COMMANDS = {
         "edit",
         "Make a new clip from a clip: cut, mirrored, at another rate, in place, or as a loop.",
     ),
+    "collections": CommandEntry(
+        "app.cli.collections", "program", "Make, fill, show and export collections."
+    ),
+    "searches": CommandEntry(
+        "app.cli.searches", "program", "Save searches, run them again, and see new hits."
+    ),
     "jobs": CommandEntry(
         "app.cli.jobs", "program", "List, show and cancel work in the background."
     ),

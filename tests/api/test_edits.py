@@ -28,8 +28,8 @@ def test_an_edit_makes_a_clip_with_the_same_motion(
     steps = [{"kind": "cut", "start": 0.2, "end": 1.4}]
     assert clip["origin"] == {"clip_id": walk["id"], "deleted": False, "steps": steps}
     assert demo.post(f"/v1/clips/{walk['id']}/edits", json=asked).status_code == 200
-    rows = demo.get("/v1/audit", params={"clip_id": walk["id"], "action": "edit_clip"}).json()
-    assert rows["items"][-1]["details"] == {"new_clip_id": clip_id, "steps": ["cut"]}
+    rows = demo.get("/v1/audit", params={"clip": walk["id"], "action": "edit_clip"}).json()
+    assert rows["items"][0]["details"] == {"new_clip_id": clip_id, "steps": ["cut"]}
     with Kinedex(demo_service.url) as client:
         whole, cut = client.clips.motion(walk["id"]), client.clips.motion(clip_id)
         first = round(0.2 * whole.frame_rate)

@@ -43,6 +43,9 @@ class Filter(Incoming):
         None, description="Clips whose files were in this folder of an import, or below it."
     )
     not_folder: AnyOf | None = Field(None, description="Clips of none of these folders.")
+    collection: AnyOf | None = Field(
+        None, description="Ids of collections: clips that are in one of them, whole or in part."
+    )
     min_duration: Seconds | None = Field(None, description="Seconds.")
     max_duration: Seconds | None = Field(None, description="Seconds.")
     min_frame_rate: Measure | None = Field(None, description="Frames per second.")

@@ -166,6 +166,7 @@ def get_manifest(
     not_source: str | Sequence[str] | None = None,
     folder: str | Sequence[str] | None = None,
     not_folder: str | Sequence[str] | None = None,
+    collection: str | Sequence[str] | None = None,
     min_duration: float | None = None,
     max_duration: float | None = None,
     min_frame_rate: float | None = None,
@@ -191,6 +192,7 @@ def get_manifest(
     not_source: Clips from none of these sources.
     folder: Clips whose files were in this folder of an import, or below it.
     not_folder: Clips of none of these folders.
+    collection: Ids of collections: clips that are in one of them, whole or in part.
     min_duration: Seconds.
     max_duration: Seconds.
     min_frame_rate: Frames per second.
@@ -226,6 +228,7 @@ def get_manifest(
             not_source=not_source,
             folder=folder,
             not_folder=not_folder,
+            collection=collection,
             min_duration=min_duration,
             max_duration=max_duration,
             min_frame_rate=min_frame_rate,

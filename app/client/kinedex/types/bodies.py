@@ -2,10 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NotRequired, TypedDict
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal, NotRequired, TypedDict
 
-from kinedex.types.choices import EditKind
+from kinedex.types.choices import EditKind, Method
+
+
+class CollectionItemForm(TypedDict):
+    """A clip, or a part of it, to add to a collection.
+
+    start: Start of the part, seconds.
+    end: End of the part, seconds.
+    """
+
+    clip_id: str
+    start: NotRequired[float | None]
+    end: NotRequired[float | None]
+    notes: NotRequired[str]
 
 
 class Filter(TypedDict):
@@ -21,6 +34,7 @@ class Filter(TypedDict):
     not_source: Clips from none of these sources.
     folder: Clips whose files were in this folder of an import, or below it.
     not_folder: Clips of none of these folders.
+    collection: Ids of collections: clips that are in one of them, whole or in part.
     min_duration: Seconds.
     max_duration: Seconds.
     min_frame_rate: Frames per second.
@@ -49,6 +63,7 @@ class Filter(TypedDict):
     not_source: NotRequired[str | Sequence[str] | None]
     folder: NotRequired[str | Sequence[str] | None]
     not_folder: NotRequired[str | Sequence[str] | None]
+    collection: NotRequired[str | Sequence[str] | None]
     min_duration: NotRequired[float | None]
     max_duration: NotRequired[float | None]
     min_frame_rate: NotRequired[float | None]
@@ -79,6 +94,31 @@ class SearchExample(TypedDict):
     end: NotRequired[float | None]
     weight: NotRequired[float]
     against: NotRequired[bool]
+
+
+class ComposedSearch(TypedDict):
+    """Find motions by examples and words together; one of them must be for something.
+
+    method: How examples are compared. fused, dtw, msv-dtw and msv-xcorr are exact for the 300
+    clips that fit best by vectors and words; the others follow in that order. One example alone
+    is compared with every clip, as in a search by example.
+    mode: How clips are ranked by words, as in a search by words.
+    limit: Maximum number of items in one answer.
+    include_self: Whether the examples' clips may be hits.
+    examples: Motions that hits are like, or are not like.
+    words: Words, phrases or sentences, as in a search by words. Together they count like one
+    example of weight 1. A word with a minus before it (-left) leaves out the clips that carry
+    it.
+    """
+
+    method: NotRequired[Method]
+    mode: NotRequired[Literal["default", "cca", "printed"]]
+    limit: NotRequired[int]
+    include_self: NotRequired[bool]
+    filter: NotRequired[Filter | Mapping[str, Any] | None]
+    cursor: NotRequired[str | None]
+    examples: NotRequired[Sequence[SearchExample]]
+    words: NotRequired[Sequence[str]]
 
 
 class Step(TypedDict):
