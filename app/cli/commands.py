@@ -64,6 +64,9 @@ COMMANDS = {
     "searches": CommandEntry(
         "app.cli.searches", "program", "Save searches, run them again, and see new hits."
     ),
+    "labels": CommandEntry(
+        "app.cli.labels", "program", "Show and change the tree of tasks and words."
+    ),
     "jobs": CommandEntry(
         "app.cli.jobs", "program", "List, show and cancel work in the background."
     ),

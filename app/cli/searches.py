@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 program = typer.Typer(help="Save searches, run them again, and see new hits.", no_args_is_help=True)
 
+DEFAULT_LIMIT = 10
+"""Hits of a query that does not say how many."""
 SearchId = Annotated[str, typer.Argument(help="The id of a saved search.")]
 
 
@@ -70,7 +72,8 @@ def run(
 ) -> None:
     """Run a saved search again."""
     with open_client(context) as client:
-        hits = next(client.searches.hits(search_id).pages(), [])
+        limit = client.searches.get(search_id).query.get("limit", DEFAULT_LIMIT)
+        hits = list(client.searches.hits(search_id, limit=limit))
     _print_hits(hits, as_json=as_json, as_csv=as_csv)
 
 

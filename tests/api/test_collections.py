@@ -21,7 +21,7 @@ def client(demo_service: Live) -> Iterator[Kinedex]:
 
 
 def test_a_collection_from_its_making_to_its_end(
-    client: Kinedex, demo: httpx2.Client, walk: dict[str, Any]
+    client: Kinedex, demo_service: Live, demo: httpx2.Client, walk: dict[str, Any]
 ) -> None:
     body = {
         "name": "everything",
@@ -54,14 +54,17 @@ def test_a_collection_from_its_making_to_its_end(
     hits = demo.post("/v1/search/motion", json=sent).json()["items"]
     assert {hit["clip"]["id"] for hit in hits} == inside - {walk["id"]}
 
-    archive = zipfile.ZipFile(
-        io.BytesIO(client.collections.export(made["id"], "bvh", skeleton="canonical"))
-    )
+    content = client.collections.export(made["id"], "bvh", skeleton="canonical")
+    archive = zipfile.ZipFile(io.BytesIO(content))
     assert archive.testzip() is None
     assert len([n for n in archive.namelist() if n.endswith(".bvh")]) == made["size"]
     assert {"manifest.csv", "LICENSES.txt", "CREDITS.txt"} <= set(archive.namelist())
-    job = client.clips.upload_archive(("again.zip", archive.fp.read() if archive.fp else b""))
-    assert job is not None
+    job = demo_service.wait_for_job(client.clips.upload_archive(("again.zip", content)).id)
+    assert (job["state"], job["result"]["failed"]) == ("succeeded", 0), job
+    copies = demo.get("/v1/clips", params={"meta.clip_id": walk["id"], "limit": 100}).json()
+    assert {clip["task"] for clip in copies["items"]} == {"walk"}
+    for clip in demo.get("/v1/clips", params={"q": "clip_", "limit": 100}).json()["items"]:
+        demo.delete(f"/v1/clips/{clip['id']}")
 
     found = client.collections.statistics(made["id"])
     assert found.items == made["size"]

@@ -14,6 +14,7 @@ from kinedex.calls import health as calls_health
 from kinedex.calls import imports as calls_imports
 from kinedex.calls import jobs as calls_jobs
 from kinedex.calls import keyposes as calls_keyposes
+from kinedex.calls import label_tree as calls_label_tree
 from kinedex.calls import labels as calls_labels
 from kinedex.calls import low_dimensional as calls_low_dimensional
 from kinedex.calls import models as calls_models
@@ -119,6 +120,8 @@ class Labels(Group[SenderType]):
     metadata = ListMethod(calls_labels.list_metadata)
     folders = ListMethod(calls_labels.list_folders)
     manifest = CallMethod(calls_labels.get_manifest)
+    tree = CallMethod(calls_label_tree.get_label_tree)
+    put_tree = CallMethod(calls_label_tree.put_label_tree)
 
 
 class Studies(Group[SenderType]):

@@ -16,7 +16,7 @@ from dataclasses import replace
 from typing import Any
 
 from app.services.clips.anonymize import NameRemover
-from app.store import collections, saved_searches
+from app.store import collections, label_parents, saved_searches
 from app.store.clips import texts
 from app.store.clips.metadata_values import as_text
 from app.store.clips.record import META
@@ -38,6 +38,7 @@ def remove_name(tx: Tx, person: str, clip_ids: Collection[str]) -> None:
     if remover.has_letter:
         _remove_from_collections(tx, remover)
         _remove_from_searches(tx, remover)
+        _remove_from_tree(tx, remover)
 
 
 def _remove_from_collections(tx: Tx, remover: NameRemover) -> None:
@@ -54,6 +55,12 @@ def _remove_from_searches(tx: Tx, remover: NameRemover) -> None:
         name, query = remover.without(search.name), remover.in_json(search.query)
         if (name, query) != (search.name, search.query):
             saved_searches.rewrite(tx, search.id, name, query)
+
+
+def _remove_from_tree(tx: Tx, remover: NameRemover) -> None:
+    said = label_parents.read(tx)
+    named = {label for label in {*said, *said.values()} if label and remover.is_name(label)}
+    label_parents.remove(tx, named)
 
 
 def _strings(value: Any) -> Iterator[str]:

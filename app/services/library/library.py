@@ -17,6 +17,7 @@ from app.search.pose.by_pose import POSES
 from app.search.windows.parts import parts_layout
 from app.services.library.analysis_pool import AnalysisPool, Limits
 from app.services.library.fitted_models import METRICS, FittedModels, ModelKind
+from app.services.library.kept_tree import KeptTree
 from app.store import identity
 from app.store.folders import warn_if_open
 from app.store.store import Store
@@ -36,7 +37,7 @@ class Library:
     clips. pool: analyzes uploaded queries; a worker has its own pool. windows: the windows of all
     clips, by the name of their scale; segments: the segments of all clips; poses: the pose covers
     of all clips; the first search that needs paced or one of these three loads it. metrics: the
-    clips' coordinates in each learned metric.
+    clips' coordinates in each learned metric. tree: of the labels.
     """
 
     settings: Settings
@@ -54,6 +55,7 @@ class Library:
     segments: VectorIndex
     poses: VectorIndex
     metrics: Mapping[ModelKind, ProjectedIndex]
+    tree: KeptTree
 
     @classmethod
     def open(cls, settings: Settings, *, prepare: bool = True) -> Self:
@@ -90,6 +92,7 @@ class Library:
             ),
             poses=VectorIndex(layout=POSES),
             metrics={kind: ProjectedIndex(index) for kind in METRICS},
+            tree=KeptTree(),
         )
 
     def close(self) -> None:

@@ -54,6 +54,8 @@ METHODS = {
     "run_search": "searches.hits",
     "get_new_hits": "searches.new_hits",
     "mark_search_seen": "searches.mark_seen",
+    "get_label_tree": "labels.tree",
+    "put_label_tree": "labels.put_tree",
     "list_webhooks": "webhooks.list",
     "create_webhook": "webhooks.create",
     "get_webhook": "webhooks.get",

@@ -84,6 +84,9 @@ JointRole: TypeAlias = Literal[
 KeyRole: TypeAlias = Literal["read", "write", "admin"]
 
 
+LinkKind: TypeAlias = Literal["people", "phrase", "inflection", "lexicon"]
+
+
 MatchesPerClip: TypeAlias = Literal["best", "all"]
 
 
