@@ -22,6 +22,7 @@ from app.api.schemas.saved_searches import (
     SearchPatch,
     as_query,
     as_stored,
+    first_page,
 )
 from app.api.sparse import clip_fields, sparse_page
 from app.errors import ClipNotReady, Conflict, ModelNotFitted, NotEnoughLabels
@@ -40,7 +41,7 @@ SEARCHED = (ClipNotReady, ModelNotFitted, NotEnoughLabels)
 )
 def save_search(lib: Lib, new: NewSearch) -> SavedSearch:
     """Save a search of `POST /v1/search` under a name. Its present hits count as seen."""
-    saved = searches.save(lib, new.name, new.query.query(), as_stored(new.query))
+    saved = searches.save(lib, new.name, first_page(new.query), as_stored(new.query))
     return SavedSearch.model_validate(saved)
 
 
@@ -69,7 +70,7 @@ def update_search(lib: Lib, search_id: SearchId, patch: SearchPatch) -> SavedSea
         lib,
         search_id,
         name=patch.name,
-        query=None if query is None else query.query(),
+        query=None if query is None else first_page(query),
         as_sent=None if query is None else as_stored(query),
     )
     return SavedSearch.model_validate(changed)

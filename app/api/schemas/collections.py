@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from datetime import datetime
 from typing import Annotated, Any
 
@@ -36,7 +37,9 @@ from app.store.collections import NewItem
 
 MAX_ADDED = 1000
 """Items that one call lists; a filter or a search may add more."""
-Notes = Annotated[str, Field(max_length=MAX_NOTES)]
+_LINES = {"pattern": r"^[^\u0000-\u0008\u000b\u000c\u000e-\u001f\u007f-\u009f]*$"}
+Notes = Annotated[str, Field(max_length=MAX_NOTES, json_schema_extra=_LINES)]
+"""Text of several lines."""
 
 
 class CollectionItemForm(Incoming):
@@ -74,7 +77,7 @@ class CollectionItems(Incoming):
         if self.filter is not None:
             added += from_filter(lib, self.filter.given())
         if self.search is not None:
-            added += from_search(lib, self.search.query())
+            added += from_search(lib, replace(self.search.query(), cursor=None))
         return added
 
 

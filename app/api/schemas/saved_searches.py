@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from datetime import datetime
 from typing import Annotated, Any
 
@@ -19,6 +20,7 @@ from app.api.schemas.base import (
     not_null,
 )
 from app.api.schemas.composed_search import ComposedHit, ComposedSearch
+from app.services.find.queries import ComposedQuery
 from app.store.saved_searches import SearchRecord
 
 _Name = Annotated[Label, Field(json_schema_extra=NAMED)]
@@ -33,6 +35,11 @@ def as_stored(query: ComposedSearch) -> dict[str, Any]:
 def as_query(search: SearchRecord, **changes: Any) -> ComposedSearch:
     """The saved query. changes: other values of its fields. Raises ValidationError."""
     return ComposedSearch.model_validate({**search.query, **changes})
+
+
+def first_page(query: ComposedSearch) -> ComposedQuery:
+    """The query of the service, from the first hit."""
+    return replace(query.query(), cursor=None)
 
 
 class NewSearch(Incoming):

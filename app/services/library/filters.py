@@ -42,20 +42,20 @@ def resolved_filter(lib: Library, given: ClipFilter | Mapping[str, Any] | None) 
 
 def _with_kinds(tree: LibraryTree, asked: ClipFilter) -> ClipFilter:
     changes: dict[str, Any] = {
-        name: _kinds(tree, getattr(asked, name), getattr(tree, labels))
+        name: _kinds(tree, getattr(asked, name), labels)
         for name, labels in _KINDS.items()
         if getattr(asked, name)
     }
     return replace(asked, **changes)
 
 
-def _kinds(tree: LibraryTree, values: Iterable[str], labels: Iterable[str]) -> tuple[str, ...]:
+def _kinds(tree: LibraryTree, values: Iterable[str], labels: str) -> tuple[str, ...]:
     found: list[str] = []
     for value in values:
         if value.startswith(EXACTLY):
             found.append(value.removeprefix(EXACTLY))
         else:
-            found += [value, *tree.tree.kinds(value, labels)]
+            found += [value, *tree.kinds_of(value, labels)]
     return tuple(dict.fromkeys(found))
 
 

@@ -19,6 +19,8 @@ LABELS = ("right leg kick", "kick", "jog", "run", "slow_walk", "walk", "stand")
         ("walk backwards", "walk", LinkKind.PHRASE),
         ("High-Kick", "kick", LinkKind.PHRASE),
         ("walk with a box", "walk", LinkKind.PHRASE),
+        ("walk-turn-left", "walk", LinkKind.PHRASE),
+        ("turn left", "turn", LinkKind.PHRASE),
         ("leg kicking", "kick", LinkKind.PHRASE),
         ("jog", "run", LinkKind.LEXICON),
         ("sprint", "run", LinkKind.LEXICON),

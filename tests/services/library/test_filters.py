@@ -65,6 +65,14 @@ def test_a_task_means_all_kinds_of_it(mine: Library, kicks: list[ClipRecord]) ->
         assert ids[0] not in find(word=("=kick",))
 
 
+def test_kinds_are_looked_up_as_the_tree_finds_them(mine: Library, kicks: list[ClipRecord]) -> None:
+    found = get_tree(mine)
+    for node in [*found.tree.nodes, "nosuch", "Right-Leg Kick"]:
+        assert found.kinds_of(node, "tasks") == found.tree.kinds(node, found.tasks)
+        assert found.kinds_of(node, "words") == found.tree.kinds(node, found.words)
+    assert len(kicks) == 3
+
+
 def test_people_change_the_tree(mine: Library, kicks: list[ClipRecord]) -> None:
     assert get_tree(mine).tree.path("jog")[:2] == ("jog", "run")
     put_parents(mine, {"Jog": "kick", "right leg kick": None})

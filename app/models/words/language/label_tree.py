@@ -4,7 +4,8 @@ The parent of a label is, in this order:
 
 1. what people say: another label, or nothing;
 2. for a phrase, its head: of the words before the first preposition that are no manner, direction
-   or part of the body, the last that the lexicon of movement knows, else the last one;
+   or part of the body, the last that the lexicon of movement knows (a turn only alone), else the
+   last one;
 3. for an inflected word, its base form, if the library or the lexicon has that: *kicking*, *kick*;
 4. for a word of the lexicon, the first word with the same meaning, or of the broader meaning.
 
@@ -33,6 +34,8 @@ arm arms leg legs hand hands foot feet head knee knees elbow elbows shoulder sho
 body upper lower front back side a an the one two cycle loop
 """
 """Words that say how, where or with what somebody moves."""
+WEAK_HEAD = "turn"
+"""The head only of a phrase without another action: to walk and turn left is to walk."""
 _BEFORE_OTHERS = frozenset(_PREPOSITIONS.split())
 _NO_HEADS = frozenset(_MANNERS.split())
 
@@ -170,4 +173,5 @@ def _head(phrase: str) -> str | None:
         return None
     bases = {word: base_form(word, lexicon.is_known) for word in heads}
     known = [base for word in heads if (base := bases[word]) is not None]
-    return known[-1] if known else heads[-1]
+    actions = [word for word in known if word != WEAK_HEAD] or known
+    return actions[-1] if actions else heads[-1]
