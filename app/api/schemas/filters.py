@@ -11,10 +11,7 @@ from app.api.schemas.base import ENERGY, SPEED, TEMPO, TRAVEL, AnyOf, Incoming, 
 from app.search.index.filters import META_PATTERN, is_metadata_key
 
 _VALUE: JsonDict = {"type": ["string", "number", "boolean"], "maxLength": 300}
-_KINDS = (
-    "Each means all kinds of it (`GET /v1/labels/tree`): `kick` finds a right leg kick. With an"
-    " equals sign before it (`=kick`), it means itself alone."
-)
+_KINDS = "And all kinds of them (`GET /v1/labels/tree`), but for one with = before it (`=kick`)."
 _META: JsonDict = {
     "description": "Metadata: `meta.KEY` and `not_meta.KEY` are a value or a list of values;"
     " `meta.KEY.min` and `meta.KEY.max` are numbers, both ends included.",
@@ -34,8 +31,8 @@ class Filter(Incoming):
     _metadata: dict[str, Any] = PrivateAttr(default_factory=dict)
 
     person: AnyOf | None = None
-    task: AnyOf | None = Field(None, description=f"Tasks. {_KINDS}")
-    word: AnyOf | None = Field(None, description=f"Words. {_KINDS}")
+    task: AnyOf | None = Field(None, description=_KINDS)
+    word: AnyOf | None = Field(None, description="As `task`.")
     license: AnyOf | None = None
     source: AnyOf | None = None
     not_person: AnyOf | None = Field(None, description="Clips of none of these persons.")

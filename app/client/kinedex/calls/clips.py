@@ -83,10 +83,8 @@ def list_clips(
     and `meta.KEY.min=30`, `meta.KEY.max=40` filter by a number; `GET /v1/metadata` lists the
     keys.
 
-    task: Tasks. Each means all kinds of it (`GET /v1/labels/tree`): `kick` finds a right leg
-        kick. With an equals sign before it (`=kick`), it means itself alone.
-    word: Words. Each means all kinds of it (`GET /v1/labels/tree`): `kick` finds a right leg
-        kick. With an equals sign before it (`=kick`), it means itself alone.
+    task: And all kinds of them (`GET /v1/labels/tree`), but for one with = before it (`=kick`).
+    word: As `task`.
     not_person: Clips of none of these persons.
     not_task: Clips of none of these tasks.
     not_word: Clips with none of these words.

@@ -49,10 +49,8 @@ def get_space(
 ) -> Call[SpaceMap]:
     """Every ready clip as a point in two or three dimensions. Similar clips are close together.
 
-    task: Tasks. Each means all kinds of it (`GET /v1/labels/tree`): `kick` finds a right leg
-        kick. With an equals sign before it (`=kick`), it means itself alone.
-    word: Words. Each means all kinds of it (`GET /v1/labels/tree`): `kick` finds a right leg
-        kick. With an equals sign before it (`=kick`), it means itself alone.
+    task: And all kinds of them (`GET /v1/labels/tree`), but for one with = before it (`=kick`).
+    word: As `task`.
     not_person: Clips of none of these persons.
     not_task: Clips of none of these tasks.
     not_word: Clips with none of these words.
@@ -161,10 +159,8 @@ def get_space_columns(
 ) -> Call[SpaceColumns]:
     """The same map as columns of numbers, to draw very many clips: each value is written once.
 
-    task: Tasks. Each means all kinds of it (`GET /v1/labels/tree`): `kick` finds a right leg
-        kick. With an equals sign before it (`=kick`), it means itself alone.
-    word: Words. Each means all kinds of it (`GET /v1/labels/tree`): `kick` finds a right leg
-        kick. With an equals sign before it (`=kick`), it means itself alone.
+    task: And all kinds of them (`GET /v1/labels/tree`), but for one with = before it (`=kick`).
+    word: As `task`.
     not_person: Clips of none of these persons.
     not_task: Clips of none of these tasks.
     not_word: Clips with none of these words.
