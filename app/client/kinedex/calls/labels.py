@@ -185,8 +185,7 @@ def get_manifest(
 ) -> Call[bytes]:
     """The labels, hints and metadata of clips, as a manifest that an import reads again.
 
-    task: And all kinds of them (`GET /v1/labels/tree`), but for one with = before it (`=kick`).
-    word: As `task`.
+    task: Kinds of it too, as of a word (`/v1/labels/tree`); none with = before it.
     not_person: Clips of none of these persons.
     not_task: Clips of none of these tasks.
     not_word: Clips with none of these words.
@@ -194,7 +193,7 @@ def get_manifest(
     not_source: Clips from none of these sources.
     folder: Clips whose files were in this folder of an import, or below it.
     not_folder: Clips of none of these folders.
-    collection: Ids of collections: clips that are in one of them, whole or in part.
+    collection: Ids of collections: clips in any of them.
     min_duration: Seconds.
     max_duration: Seconds.
     min_frame_rate: Frames per second.

@@ -49,8 +49,7 @@ def get_space(
 ) -> Call[SpaceMap]:
     """Every ready clip as a point in two or three dimensions. Similar clips are close together.
 
-    task: And all kinds of them (`GET /v1/labels/tree`), but for one with = before it (`=kick`).
-    word: As `task`.
+    task: Kinds of it too, as of a word (`/v1/labels/tree`); none with = before it.
     not_person: Clips of none of these persons.
     not_task: Clips of none of these tasks.
     not_word: Clips with none of these words.
@@ -58,7 +57,7 @@ def get_space(
     not_source: Clips from none of these sources.
     folder: Clips whose files were in this folder of an import, or below it.
     not_folder: Clips of none of these folders.
-    collection: Ids of collections: clips that are in one of them, whole or in part.
+    collection: Ids of collections: clips in any of them.
     min_duration: Seconds.
     max_duration: Seconds.
     min_frame_rate: Frames per second.
@@ -159,8 +158,7 @@ def get_space_columns(
 ) -> Call[SpaceColumns]:
     """The same map as columns of numbers, to draw very many clips: each value is written once.
 
-    task: And all kinds of them (`GET /v1/labels/tree`), but for one with = before it (`=kick`).
-    word: As `task`.
+    task: Kinds of it too, as of a word (`/v1/labels/tree`); none with = before it.
     not_person: Clips of none of these persons.
     not_task: Clips of none of these tasks.
     not_word: Clips with none of these words.
@@ -168,7 +166,7 @@ def get_space_columns(
     not_source: Clips from none of these sources.
     folder: Clips whose files were in this folder of an import, or below it.
     not_folder: Clips of none of these folders.
-    collection: Ids of collections: clips that are in one of them, whole or in part.
+    collection: Ids of collections: clips in any of them.
     min_duration: Seconds.
     max_duration: Seconds.
     min_frame_rate: Frames per second.

@@ -27,8 +27,7 @@ class Filter(TypedDict):
     `meta.KEY=VALUE` filters by the metadata of the clips, `not_meta.KEY=VALUE` leaves clips with
     that value out, and `meta.KEY.min=30`, `meta.KEY.max=40` filter by a number.
 
-    task: And all kinds of them (`GET /v1/labels/tree`), but for one with = before it (`=kick`).
-    word: As `task`.
+    task: Kinds of it too, as of a word (`/v1/labels/tree`); none with = before it.
     not_person: Clips of none of these persons.
     not_task: Clips of none of these tasks.
     not_word: Clips with none of these words.
@@ -36,7 +35,7 @@ class Filter(TypedDict):
     not_source: Clips from none of these sources.
     folder: Clips whose files were in this folder of an import, or below it.
     not_folder: Clips of none of these folders.
-    collection: Ids of collections: clips that are in one of them, whole or in part.
+    collection: Ids of collections: clips in any of them.
     min_duration: Seconds.
     max_duration: Seconds.
     min_frame_rate: Frames per second.
