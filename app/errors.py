@@ -155,6 +155,18 @@ class WebhookNotFound(NotFound):
     code = "webhook_not_found"
 
 
+class CollectionNotFound(NotFound):
+    """There is no collection with this id."""
+
+    code = "collection_not_found"
+
+
+class SearchNotFound(NotFound):
+    """There is no saved search with this id."""
+
+    code = "search_not_found"
+
+
 class StoredFileMissing(NotFound):
     """A stored file of this clip is missing."""
 

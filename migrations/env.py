@@ -6,11 +6,11 @@ from typing import Any, Literal
 
 from alembic import context
 
-from app.store.database import service_tables, tables
+from app.store.database import collection_tables, service_tables, tables
 from app.store.database.columns import UtcDateTime
 
 # Both modules add their tables to the same collection.
-(metadata,) = {tables.metadata, service_tables.metadata}
+(metadata,) = {tables.metadata, service_tables.metadata, collection_tables.metadata}
 
 
 def render_item(kind: str, item: Any, _context: Any) -> str | Literal[False]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from app.api.guard.callers import is_open
 from app.services.library.fitted_models import KINDS_WITH_SIGNATURES, KINDS_WITH_UNKNOWN
 from app.services.library.library import Library
-from app.store import evaluations, models, studies
+from app.store import collections, evaluations, models, saved_searches, studies
 from app.store.clips import listing as clip_listing
 from app.store.database.engine import Tx
 from app.store.jobs import repository as jobs
@@ -44,6 +44,8 @@ def _of_others(tx: Tx) -> dict[str, str | None]:
     analysis = jobs.list_jobs(tx, kind=JobKind.INGEST, limit=1).items
     pairs = studies.list_pairs(tx, limit=1).items
     registered = webhooks.list_all(tx)
+    collected = collections.list_page(tx, limit=1).items
+    saved = saved_searches.list_page(tx, limit=1).items
     kept = evaluations.list_page(tx, limit=1).items
     fitted = models.list_current(tx)
     recognizer = [one for one in fitted if one.kind in KINDS_WITH_UNKNOWN]
@@ -52,7 +54,15 @@ def _of_others(tx: Tx) -> dict[str, str | None]:
         "JOB_ID": analysis[0].id if analysis else None,
         "PAIR_ID": pairs[0].id if pairs else None,
         "EVALUATION_ID": kept[0].id if kept else None,
+        "COLLECTION_ID": collected[0].id if collected else None,
+        "ITEM_ID": _first_item(tx, collected[0].id) if collected else None,
+        "SEARCH_ID": saved[0].id if saved else None,
         "WEBHOOK_ID": registered[0].id if registered else None,
         "MODEL_ID": recognizer[0].id if recognizer else None,
         "SIGNATURE_MODEL_ID": multilinear[0].id if multilinear else None,
     }
+
+
+def _first_item(tx: Tx, collection_id: str) -> str | None:
+    items = collections.items_page(tx, collection_id, limit=1).items
+    return items[0].id if items else None

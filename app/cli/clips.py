@@ -213,6 +213,10 @@ def _details(clip: Clip) -> list[tuple[str, object]]:
     if clip.start_offset:
         rows.append(("begins", f"{clip.start_offset:.3f} s after the start of the file"))
     rows += [("reanalysis", clip.reanalysis)] if clip.reanalysis else []
+    if clip.origin is not None:
+        state = " (deleted)" if clip.origin.deleted else ""
+        steps = ", ".join(str(step["kind"]) for step in clip.origin.steps)
+        rows.append(("made from", f"{clip.origin.clip_id}{state}: {steps}"))
     rows += [(f"warning {one.code}", one.detail) for one in clip.warnings]
     if clip.error is not None:
         rows.append(("error", clip.error.detail))

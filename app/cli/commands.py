@@ -53,6 +53,20 @@ COMMANDS = {
         "Synthesize a motion that a person never recorded, as a BVH file, and report its quality.",
     ),
     "clips": CommandEntry("app.cli.clips", "program", "List, show, label and delete stored clips."),
+    "edit": CommandEntry(
+        "app.cli.edit",
+        "edit",
+        "Make a new clip from a clip: cut, mirrored, at another rate, in place, or as a loop.",
+    ),
+    "collections": CommandEntry(
+        "app.cli.collections", "program", "Make, fill, show and export collections."
+    ),
+    "searches": CommandEntry(
+        "app.cli.searches", "program", "Save searches, run them again, and see new hits."
+    ),
+    "labels": CommandEntry(
+        "app.cli.labels", "program", "Show and change the tree of tasks and words."
+    ),
     "jobs": CommandEntry(
         "app.cli.jobs", "program", "List, show and cancel work in the background."
     ),

@@ -23,9 +23,9 @@ from app.evaluate.words.evaluation import judge_words, word_examples
 from app.evaluate.words.symbols import judge_symbols
 from app.models.keyposes.matching import TOLERANCE
 from app.search.example.methods import Method
-from app.search.index.filters import parse_filter
 from app.services.evaluations.evaluations import Evaluated, bounded
 from app.services.evaluations.options import EvaluationKind, EvaluationOptions
+from app.services.library.filters import resolved_filter
 from app.services.library.library import Library
 from app.services.training.training_set import ready_only
 from app.store.clips import labels, versions
@@ -47,7 +47,7 @@ def run_evaluation(
     TooLarge if its document is too large to be kept.
     """
     began = time.monotonic()
-    filter = parse_filter(options.filter)
+    filter = resolved_filter(lib, options.filter)
     with lib.store.read() as tx:
         version, persons = versions.version(tx), labels.person_names(tx)
         size = count_clips(tx, ready_only(filter))

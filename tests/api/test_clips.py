@@ -19,7 +19,7 @@ CLIP_FIELDS = {
     *("source", "frames", "frame_rate", "declared_frame_rate", "duration", "start_offset"),
     *("travel", "speed", "energy", "tempo"),
     *("joints", "roles", "missing_roles", "warnings", "created_at", "error"),
-    *("has_audio", "audio_offset", "reanalysis", "path", "metadata", "captions"),
+    *("has_audio", "audio_offset", "reanalysis", "path", "metadata", "captions", "origin"),
 }
 JOB_FIELDS = {
     *("id", "kind", "state", "clip_id", "progress", "detail"),

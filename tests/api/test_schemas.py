@@ -69,6 +69,7 @@ CLIP = ClipRecord(
     analysis_version=3,
     reanalysis=None,
     is_changed=True,
+    origin=None,
     changed_version=4,
 )
 JOB = JobRecord(

@@ -91,8 +91,8 @@ def _recording(uploads: dict[str, UploadFile]) -> NewRecording | None:
 def list_clips(lib: Lib, query: Annotated[ClipQuery, Query()]) -> ClipList | Response:
     """List the clips that pass every filter. Repeat a label parameter to accept several values.
 
-    `meta.KEY=VALUE` filters by metadata, `not_meta.KEY=VALUE` leaves clips with that value out, and
-    `meta.KEY.min=30`, `meta.KEY.max=40` filter by a number; `GET /v1/metadata` lists the keys.
+    `meta.KEY=VALUE` filters by metadata, `not_meta.KEY=VALUE` refuses a value, `meta.KEY.min=30`
+    and `meta.KEY.max=40` filter by a number (keys: `GET /v1/metadata`).
     """
     page = clips.list_clips(lib, query.as_filter(), query.sort, query.limit, query.cursor)
     chosen = query.fields

@@ -125,6 +125,19 @@ FormBeats = Annotated[
 ]
 
 
+class ClipOrigin(Outgoing):
+    """Where an edited copy comes from."""
+
+    clip_id: str = Field(description="The id of the original.")
+    deleted: bool = Field(
+        validation_alias="is_deleted", description="Whether the original was deleted since."
+    )
+    steps: list[dict[str, Any]] = Field(
+        description="The edits in their order, each with its `kind`. Those that keep a part have"
+        " its `start` and `end`, seconds of the motion before the step."
+    )
+
+
 class Clip(Outgoing):
     """A motion-capture clip with its labels."""
 
@@ -173,6 +186,9 @@ class Clip(Outgoing):
         description="State of a new analysis of a ready clip, after a change of the clip or of"
         " Kinedex. It is null when the new analysis is done. Until then, searches use the earlier"
         " analysis. After `failed` they still use it, and a warning gives the reason."
+    )
+    origin: ClipOrigin | None = Field(
+        description="Of a clip that an edit made (`POST /v1/clips/{id}/edits`), else null."
     )
 
 

@@ -11,6 +11,7 @@ from app.api.schemas.base import ENERGY, SPEED, TEMPO, TRAVEL, AnyOf, Incoming, 
 from app.search.index.filters import META_PATTERN, is_metadata_key
 
 _VALUE: JsonDict = {"type": ["string", "number", "boolean"], "maxLength": 300}
+_KINDS = "Kinds of it too, as of a word (`/v1/labels/tree`); none with = before it."
 _META: JsonDict = {
     "description": "Metadata: `meta.KEY` and `not_meta.KEY` are a value or a list of values;"
     " `meta.KEY.min` and `meta.KEY.max` are numbers, both ends included.",
@@ -30,7 +31,7 @@ class Filter(Incoming):
     _metadata: dict[str, Any] = PrivateAttr(default_factory=dict)
 
     person: AnyOf | None = None
-    task: AnyOf | None = None
+    task: AnyOf | None = Field(None, description=_KINDS)
     word: AnyOf | None = None
     license: AnyOf | None = None
     source: AnyOf | None = None
@@ -43,6 +44,7 @@ class Filter(Incoming):
         None, description="Clips whose files were in this folder of an import, or below it."
     )
     not_folder: AnyOf | None = Field(None, description="Clips of none of these folders.")
+    collection: AnyOf | None = Field(None, description="Ids of collections: clips in any of them.")
     min_duration: Seconds | None = Field(None, description="Seconds.")
     max_duration: Seconds | None = Field(None, description="Seconds.")
     min_frame_rate: Measure | None = Field(None, description="Frames per second.")

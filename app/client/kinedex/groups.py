@@ -7,12 +7,15 @@ from kinedex.calls import audit as calls_audit
 from kinedex.calls import clip_annotations as calls_clip_annotations
 from kinedex.calls import clip_views as calls_clip_views
 from kinedex.calls import clips as calls_clips
+from kinedex.calls import collections as calls_collections
+from kinedex.calls import edits as calls_edits
 from kinedex.calls import evaluations as calls_evaluations
 from kinedex.calls import export as calls_export
 from kinedex.calls import health as calls_health
 from kinedex.calls import imports as calls_imports
 from kinedex.calls import jobs as calls_jobs
 from kinedex.calls import keyposes as calls_keyposes
+from kinedex.calls import label_tree as calls_label_tree
 from kinedex.calls import labels as calls_labels
 from kinedex.calls import low_dimensional as calls_low_dimensional
 from kinedex.calls import models as calls_models
@@ -20,6 +23,7 @@ from kinedex.calls import poses as calls_poses
 from kinedex.calls import recognize as calls_recognize
 from kinedex.calls import recordings as calls_recordings
 from kinedex.calls import search as calls_search
+from kinedex.calls import searches as calls_searches
 from kinedex.calls import segments as calls_segments
 from kinedex.calls import service as calls_service
 from kinedex.calls import session as calls_session
@@ -44,6 +48,7 @@ class Clips(Group[SenderType]):
     file = CallMethod(calls_clips.get_file)
     audio = CallMethod(calls_recordings.get_audio)
     delete_audio = CallMethod(calls_recordings.delete_audio)
+    edit = CallMethod(calls_edits.edit_clip)
     motion = CallMethod(calls_clip_views.get_motion)
     motion_array = CallMethod(calls_clip_views.get_motion_array)
     descriptor = CallMethod(calls_clip_views.get_descriptor)
@@ -127,6 +132,8 @@ class Labels(Group[SenderType]):
     folders = ListMethod(calls_labels.list_folders)
     manifest = CallMethod(calls_labels.get_manifest)
     annotation_table = CallMethod(calls_labels.get_annotation_table)
+    tree = CallMethod(calls_label_tree.get_label_tree)
+    put_tree = CallMethod(calls_label_tree.put_label_tree)
 
 
 class Studies(Group[SenderType]):
@@ -156,6 +163,36 @@ class Service(Group[SenderType]):
     metrics = CallMethod(calls_service.metrics)
 
 
+class Collections(Group[SenderType]):
+    """Named sets of clips or parts of clips."""
+
+    list = ListMethod(calls_collections.list_collections)
+    create = CallMethod(calls_collections.create_collection)
+    get = CallMethod(calls_collections.get_collection)
+    update = CallMethod(calls_collections.update_collection)
+    delete = CallMethod(calls_collections.delete_collection)
+    items = ListMethod(calls_collections.list_items)
+    add = CallMethod(calls_collections.add_items)
+    update_item = CallMethod(calls_collections.update_item)
+    remove_item = CallMethod(calls_collections.remove_item)
+    order = CallMethod(calls_collections.order_items)
+    statistics = CallMethod(calls_collections.get_collection_statistics)
+    export = CallMethod(calls_collections.export_collection_as_zip)
+
+
+class Searches(Group[SenderType]):
+    """Saved searches."""
+
+    list = ListMethod(calls_searches.list_searches)
+    save = CallMethod(calls_searches.save_search)
+    get = CallMethod(calls_searches.get_search)
+    update = CallMethod(calls_searches.update_search)
+    delete = CallMethod(calls_searches.delete_search)
+    hits = ListMethod(calls_searches.run_search)
+    new_hits = CallMethod(calls_searches.get_new_hits)
+    mark_seen = CallMethod(calls_searches.mark_search_seen)
+
+
 class Webhooks(Group[SenderType]):
     """Webhooks: addresses that the service calls when a job ends."""
 
@@ -182,4 +219,6 @@ class RootBase(Group[SenderType]):
         self.labels = Labels(sender)
         self.studies = Studies(sender)
         self.service = Service(sender)
+        self.collections = Collections(sender)
+        self.searches = Searches(sender)
         self.webhooks = Webhooks(sender)

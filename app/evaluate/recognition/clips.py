@@ -12,12 +12,17 @@ from app.evaluate.grouping import Grouping
 from app.models.held_out.recognition import Clips
 from app.models.recognition.copies import ClipCopies
 from app.models.recognition.views import full_samples
+from app.models.words.language.label_tree import LabelTree
 from app.numerics.arrays import FloatArray, IntArray
+from app.services.library.label_tree import get_tree
 from app.services.library.library import Library
 from app.services.training.training_set import TrainingSet, read_training_set, ready_only
 from app.store.clips.filter import ClipFilter
 
 Labels = Sequence[str | None]
+
+
+NO_TREE = LabelTree(frozenset(), {})
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +35,8 @@ class JudgedClips:
     that carry neither label;
     angles: (N, 642) angle samples, None where a clip has none; wide: (N, 512) wide motion vectors;
     copies: (N,) disturbed copies of some clips; reported: (N,) the group of each clip for which
-    figures are reported, None without groups.
+    figures are reported, None without groups; tree: of the tasks (no task is a kind of another
+    without one).
     """
 
     samples: FloatArray
@@ -43,6 +49,7 @@ class JudgedClips:
     wide: FloatArray | None = None
     copies: ClipCopies | None = None
     reported: Sequence[str] | None = None
+    tree: LabelTree = NO_TREE
 
     def __len__(self) -> int:
         return len(self.groups)
@@ -80,7 +87,8 @@ def read_judged_clips(
     lib: Library, filter: ClipFilter | None, grouping: Grouping | None = None
 ) -> JudgedClips:
     """The ready clips that pass the filter and carry a label, with their groups."""
-    return judged_clips(read_training(lib, filter), grouping)
+    clips = judged_clips(read_training(lib, filter), grouping)
+    return replace(clips, tree=get_tree(lib).tree)
 
 
 def read_training(lib: Library, filter: ClipFilter | None) -> TrainingSet:

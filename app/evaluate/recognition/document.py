@@ -45,6 +45,7 @@ def _held_out(held: HeldOut) -> dict[str, Any]:
         "methods": {
             judged.method: {
                 "recognized": _recognized(judged.recognized),
+                "task_in_tree": judged.task_in_tree,
                 "of_what_is_new": _recognized(judged.of_new),
                 "by_name": {name: _recognized(one) for name, one in judged.by_name.items() if name},
                 "by_group": {name: _recognized(one) for name, one in judged.by_group.items()},

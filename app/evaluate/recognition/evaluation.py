@@ -44,6 +44,7 @@ from app.evaluate.recognition.shares import (
     chance,
     confusion,
     recognized,
+    task_in_tree,
     unknown,
 )
 from app.evaluate.recognition.trials import Stopwatch, Trial, run, run_with_label
@@ -176,8 +177,7 @@ class _MethodRunner:
             except NotEnoughLabels as reason:
                 self.reasons[f"{name}, {method}"] = reason.detail
         trials_of_first = next(iter(trials.values()), ())
-        reported = self._clips.reported
-        judged = tuple(_judged(method, some, name, reported) for method, some in trials.items())
+        judged = tuple(_judged(method, some, name, self._clips) for method, some in trials.items())
         return HeldOut(len(found), judged, chance(trials_of_first))
 
     def label_given(self, found: Sequence[Round]) -> tuple[LabelGiven, ...]:
@@ -226,9 +226,7 @@ _FACTOR_OF: dict[str, str] = {LeftOut.PERSON: "person", LeftOut.TASK: "task"}
 """The factor whose labels are left out as a whole."""
 
 
-def _judged(
-    method: str, trials: Sequence[Trial], way: str, reported: Sequence[str] | None
-) -> Judged:
+def _judged(method: str, trials: Sequence[Trial], way: str, clips: JudgedClips) -> Judged:
     factor = _FACTOR_OF.get(way)
     of_new: list[Trial] = []
     if factor is not None:
@@ -242,7 +240,8 @@ def _judged(
         unknown=_unknown(trials, way),
         confusion={name: confusion(trials, name) for name in FACTORS},
         by_name=_by_left_out(trials),
-        by_group=_by_group(trials, reported),
+        by_group=_by_group(trials, clips.reported),
+        task_in_tree=task_in_tree(trials, clips.tree),
     )
 
 

@@ -24,7 +24,8 @@ class Judged:
     even if the method calls it new; of_new: the same for the clips alone whose label was left
     out (these shares are of the other factor); unknown: by factor, if both new and known clips
     were probed; confusion: by factor, C labels and (C, C) shares; by_name: `recognized` by what
-    was left out; by_group: `recognized` by the reported group of the probed clips.
+    was left out; by_group: `recognized` by the reported group of the probed clips; task_in_tree: as
+    the share of tasks, but an error within a branch of the tree of labels weighs less.
     """
 
     method: str
@@ -34,6 +35,7 @@ class Judged:
     confusion: Mapping[str, tuple[tuple[str, ...], FloatArray]]
     by_name: Mapping[str, Recognized]
     by_group: Mapping[str, Recognized]
+    task_in_tree: float | None
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.evaluate.recognition.trials import FactorResult, Trial
+from app.models.words.language.label_tree import LabelTree
 from app.numerics.area_under_curve import area_under_curve
 from app.numerics.arrays import FloatArray
 from app.numerics.binomial import wilson_interval
@@ -184,6 +185,16 @@ def confusion(trials: Iterable[Trial], factor: str) -> tuple[tuple[str, ...], Fl
     for truth, guess in pairs:
         counts[names.index(truth), names.index(guess)] += 1
     return names, counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)
+
+
+def task_in_tree(trials: Iterable[Trial], tree: LabelTree) -> float | None:
+    """The mean likeness (`LabelTree.likeness`) of the answered tasks to the true ones, 0..1.
+
+    Without any kinds it is the share of right tasks. Only clips whose task had been seen count;
+    None without one.
+    """
+    judged = [trial.task for trial in trials if _is_judged(trial.task)]
+    return _mean([tree.likeness(one.truth or "", one.guess.label or "") for one in judged])
 
 
 def _mean(values: Sequence[float]) -> float | None:

@@ -2,7 +2,8 @@
 
 The keys of a filter are `person task word license source` (a string, or an array: the clip has one
 of its values), the same keys with the prefix `not_` (the clip has none of the values), and
-`min_NAME max_NAME` for each measure, such as `min_duration` (seconds). `folder` and `not_folder`
+`min_NAME max_NAME` for each measure, such as `min_duration` (seconds). `collection` is the id of a
+collection, or an array of ids. `folder` and `not_folder`
 name folders of the paths of files; the folders below them count too. `meta.KEY` and `not_meta.KEY`
 are values of a key of the metadata, `meta.KEY.min` and `meta.KEY.max` numbers. Both ends of a range
 are included. A clip must meet all conditions. A clip without a label meets all `not_` conditions
@@ -26,6 +27,7 @@ from app.store.clips.metadata_values import as_text, from_cell
 from app.store.clips.record import META
 
 LABEL_KEYS = ("person", "task", "word", "license", "source", "folder")
+COLLECTION = "collection"
 NOT = "not_"
 NOT_KEYS = tuple(NOT + key for key in LABEL_KEYS)
 MAX_LABELS = 100
@@ -146,11 +148,11 @@ def _number(value: Any) -> float:
 
 
 def _read(key: str, value: Any) -> tuple[str, ...] | float | None:
-    if key in LABEL_KEYS or key in NOT_KEYS:
+    if key in (*LABEL_KEYS, *NOT_KEYS, COLLECTION):
         return _labels(key.removeprefix(NOT), value)
     if key in RANGE_KEYS:
         return _measure(value)
-    keys = ", ".join((*LABEL_KEYS, *NOT_KEYS, *RANGE_KEYS, f"{META}KEY"))
+    keys = ", ".join((*LABEL_KEYS, *NOT_KEYS, COLLECTION, *RANGE_KEYS, f"{META}KEY"))
     raise ValueError(f"is not a key of a filter; the keys are {keys}")
 
 

@@ -140,12 +140,21 @@ class LabelView:
             mask &= ~_any_of(self.coded[name], codes)
         for condition in clip_filter.metadata:
             mask &= self.labels.metadata.mask(condition, len(mask))
+        if clip_filter.collection:
+            mask &= self._is_one_of(clip_filter.members)
         source = visible_source()
         if source is not None:
             mask &= _any_of(self.coded["source"], self.labels.named["source"].codes([source]))
         for clip_id in exclude:
             mask[self._numbers_of(clip_id)] = False
         return mask
+
+    def _is_one_of(self, clip_ids: Iterable[str]) -> BoolArray:
+        """(n,) whether each clip is one of these."""
+        chosen = np.zeros(len(self.ids), dtype=bool)
+        numbers = self.find(np.array([*clip_ids], dtype=object))
+        chosen[numbers[numbers >= 0]] = True
+        return chosen
 
     def measured(self, name: str) -> FloatArray:
         """(n,) a measure of each clip, NaN for clips without it."""

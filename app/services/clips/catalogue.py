@@ -15,6 +15,7 @@ from app.formats.sniff import HEAD_BYTES, TAIL_BYTES, sniff
 from app.services import clip_fields, fields
 from app.services.clips.merging import OnConflict, merge
 from app.services.clips.recordings import NewRecording, attached, stage
+from app.services.library.filters import resolved_filter
 from app.services.library.library import Library
 from app.store import audit
 from app.store.clips import listing as clip_listing
@@ -226,7 +227,7 @@ def list_clips(
 ) -> Page[ClipRecord]:
     """One page of the clips that pass a filter, with the number of them. Raises BadField for a
     bad sort or cursor."""
-    passing = filter or ClipFilter()
+    passing = resolved_filter(lib, filter)
     with lib.store.read() as tx:
         page = clip_listing.list_clips(tx, passing, sort=sort, limit=limit, cursor=cursor)
         return page.counted(clip_listing.total(tx, passing))

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 
 from app.formats.csv.formulas import guarded
 from app.services import clip_fields
+from app.services.library.filters import resolved_filter
 from app.services.library.library import Library
 from app.store.clips import keypose_annotations
 from app.store.clips import listing as clip_listing
@@ -34,8 +35,9 @@ def manifest(lib: Library, filter: ClipFilter | None = None) -> Iterator[bytes]:
     A clip that came without a path has the name of its file as its path. The columns of metadata
     are called `meta.KEY`, which is metadata whatever the key is.
     """
+    passing = resolved_filter(lib, filter)
     with lib.store.read() as tx:
-        ids, keys = clip_listing.ids_by_path(tx, filter or ClipFilter())
+        ids, keys = clip_listing.ids_by_path(tx, passing)
     yield _lines([["path", *LABELS, *HINTS, KEYPOSES, *(META + key for key in keys)]])
     for batch in clips.in_batches(ids, BATCH):
         with lib.store.read() as tx:

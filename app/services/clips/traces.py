@@ -3,7 +3,8 @@
 In the clips of the person, the name is replaced wherever it is. In the clips of others, a word that
 equals the name is removed, and a folder of the path or a part of the source that equals it is
 replaced: no other text, because a name can be a common word too, and the person "Max" is not in
-`max_speed.bvh`. In lists of imported files, a name with a letter is replaced wherever it is.
+`max_speed.bvh`. In lists of imported files, in the names and notes of collections, and in saved
+searches, a name with a letter is replaced wherever it is; a search for the person is removed.
 Metadata and captions that hold the name are removed from all clips; a name without a letter, only
 from those of the person, and where the whole value equals it. The same holds for the sentences of
 annotations; who moves in them or made them is removed where it equals the name.
@@ -11,11 +12,12 @@ annotations; who moves in them or made them is removed where it equals the name.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 from typing import Any
 
 from app.services.clips.anonymize import NameRemover
+from app.store import collections, label_parents, saved_searches
 from app.store.clips import clip_annotations, texts
 from app.store.clips.clip_annotations import Annotation
 from app.store.clips.metadata_values import as_text
@@ -37,6 +39,41 @@ def remove_name(tx: Tx, person: str, clip_ids: Collection[str]) -> None:
         return remover.in_json(value) if remover.has_letter or clip_id in own else value
 
     import_texts.rewrite(tx, in_import)
+    if remover.has_letter:
+        _remove_from_collections(tx, remover)
+        _remove_from_searches(tx, remover)
+        _remove_from_tree(tx, remover)
+
+
+def _remove_from_collections(tx: Tx, remover: NameRemover) -> None:
+    for row_id, name, notes in list(collections.texts(tx)):
+        if remover.holds_name(name) or remover.holds_name(notes):
+            collections.rewrite(tx, row_id, remover.without(name), remover.without(notes))
+
+
+def _remove_from_searches(tx: Tx, remover: NameRemover) -> None:
+    for search in saved_searches.every(tx):
+        if any(map(remover.is_name, _strings(search.query))):
+            saved_searches.remove(tx, search.id)
+            continue
+        name, query = remover.without(search.name), remover.in_json(search.query)
+        if (name, query) != (search.name, search.query):
+            saved_searches.rewrite(tx, search.id, name, query)
+
+
+def _remove_from_tree(tx: Tx, remover: NameRemover) -> None:
+    said = label_parents.read(tx)
+    named = {label for label in {*said, *said.values()} if label and remover.is_name(label)}
+    label_parents.remove(tx, named)
+
+
+def _strings(value: Any) -> Iterator[str]:
+    """All strings in a value of JSON, apart from the keys of objects."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, dict | list):
+        for one in value.values() if isinstance(value, dict) else value:
+            yield from _strings(one)
 
 
 def _cleaned(remover: NameRemover, clip: ClipTexts, is_own: bool) -> ClipTexts:

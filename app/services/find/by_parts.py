@@ -15,7 +15,6 @@ import numpy as np
 from app.errors import BadField
 from app.kinedex_error import Place
 from app.search.example.methods import Method
-from app.search.index.filters import as_filter
 from app.services import fields
 from app.services.find import find
 from app.services.find.hits import Hit, Hits, PartScore, milliseconds_since
@@ -23,6 +22,7 @@ from app.services.find.paging import Match, MatchPage, Paging
 from app.services.find.queries import ComposedQuery, Example, MotionQuery, WordQuery
 from app.services.find.query_parts import QueryParts
 from app.services.find.word_parts import WordParts
+from app.services.library.filters import resolved_filter
 from app.services.library.library import Library
 
 MAX_EXAMPLES = 20
@@ -37,7 +37,7 @@ def find_by_parts(lib: Library, query: ComposedQuery) -> Hits:
     Each hit has the scores of the parts. Raises BadField, ClipNotFound, ClipNotReady, BadContent
     for an upload that cannot be used, ModelNotFitted, and NotEnoughLabels for the mode "cca".
     """
-    checked = _checked(query)
+    checked = _checked(lib, query)
     if not checked.examples:
         return _by_words(lib, checked)
     if len(checked.examples) == 1 and not checked.words:
@@ -45,7 +45,7 @@ def find_by_parts(lib: Library, query: ComposedQuery) -> Hits:
     return _by_all(lib, checked)
 
 
-def _checked(query: ComposedQuery) -> ComposedQuery:
+def _checked(lib: Library, query: ComposedQuery) -> ComposedQuery:
     """The query with its values checked and parsed. Raises BadField."""
     method, mode = find.motion_method(query.method), find.word_mode(query.mode)
     fields.limit(query.limit)
@@ -60,7 +60,8 @@ def _checked(query: ComposedQuery) -> ComposedQuery:
     if len(query.examples) > MAX_EXAMPLES:
         raise fields.bad_field("examples", f"must not be more than {MAX_EXAMPLES}")
     _check_is_for(query.examples, words)
-    return replace(query, method=method, mode=mode, words=words, filter=as_filter(query.filter))
+    passing = resolved_filter(lib, query.filter)
+    return replace(query, method=method, mode=mode, words=words, filter=passing)
 
 
 def _check_is_for(examples: Sequence[Example], words: Sequence[str]) -> None:

@@ -10,7 +10,6 @@ from typing import Any
 
 from app.motion.frame.body_frame import ANALYSIS_RATE
 from app.numerics.arrays import FloatArray
-from app.search.index.filters import as_filter
 from app.search.pose.by_pose import POSITIONS, PoseHit, PoseRanking
 from app.search.pose.pose_matches import MatchesPerClip
 from app.search.ranking import cursor as cursors
@@ -22,6 +21,7 @@ from app.services.find.pose_query import pose_at, pose_of
 from app.services.find.queries import DEFAULT_LIMIT, Filter
 from app.services.find.query import describe
 from app.services.find.query_source import QuerySource
+from app.services.library.filters import resolved_filter
 from app.services.library.library import Library
 
 METHOD = "pose"
@@ -58,7 +58,7 @@ def find_pose(lib: Library, query: PoseQuery) -> Hits:
     BadField, ClipNotFound, ClipNotReady, and BadContent for a file that cannot be used.
     """
     began = time.perf_counter()
-    clip_filter, places = as_filter(query.filter), _places(query.places)
+    clip_filter, places = resolved_filter(lib, query.filter), _places(query.places)
     fields.limit(query.limit)
     version = lib.poses.catch_up(lib.store)
     pose, exclude = _pose(lib, query)

@@ -11,7 +11,6 @@ from app.models.metric.learned_metric import INPUTS
 from app.search.example.by_example import COMPARED, SCALES, rank_by_example
 from app.search.example.distances import FEATURES
 from app.search.example.methods import LEARNED, Method
-from app.search.index.filters import as_filter
 from app.search.index.labels import LabelView
 from app.search.ranking import cursor as cursors
 from app.search.ranking.ranking import Ranked, score
@@ -29,6 +28,7 @@ from app.services.find.queries import (
     WordQuery,
 )
 from app.services.find.query import describe
+from app.services.library.filters import resolved_filter
 from app.services.library.library import Library
 from app.services.volume_options import NORMALIZED_SCALE, STORED_VOLUMES
 from app.store.clips.filter import ClipFilter
@@ -41,7 +41,7 @@ def find_motion(lib: Library, query: MotionQuery) -> Hits:
     and ModelNotFitted for a metric that is not learned yet.
     """
     began = time.perf_counter()
-    method, clip_filter = motion_method(query.method), as_filter(query.filter)
+    method, clip_filter = motion_method(query.method), resolved_filter(lib, query.filter)
     fields.limit(query.limit)
     if query.scope not in SCOPES:
         raise fields.bad_field("scope", f"must be one of {', '.join(SCOPES)}")
@@ -67,7 +67,7 @@ def find_words(lib: Library, query: WordQuery, clips: LabelView | None = None) -
     from app.services.find.words_in_parts import find_words_in_parts
 
     began = time.perf_counter()
-    clip_filter = as_filter(query.filter)
+    clip_filter = resolved_filter(lib, query.filter)
     texts, mode = fields.queried_words(query.words), word_mode(query.mode)
     fields.limit(query.limit)
     if query.scope not in SCOPES:

@@ -19,6 +19,7 @@ from app.search.index.labels import LabelView
 from app.search.index.rows import RowsView
 from app.services import fields
 from app.services.find.by_words import clip_points
+from app.services.library.filters import resolved_filter
 from app.services.library.library import Library
 from app.store.clips import repository as clips
 from app.store.clips.filter import ClipFilter
@@ -113,7 +114,7 @@ def place_clips(
     lib.index.catch_up(lib.store)
     version, rows = lib.index.state
     labels = rows.labels
-    matching = np.flatnonzero(labels.mask(clip_filter or ClipFilter()))
+    matching = np.flatnonzero(labels.mask(resolved_filter(lib, clip_filter)))
     # By id, and not by row: then the same clips are selected after the index was built again.
     by_id = matching[np.argsort(labels.ids[matching].astype(str), kind="stable")]
     selected = by_id[_evenly(len(by_id), limit)]

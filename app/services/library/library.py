@@ -19,6 +19,7 @@ from app.search.windows.part_scores import PartScores
 from app.search.windows.parts import parts_layout
 from app.services.library.analysis_pool import AnalysisPool, Limits
 from app.services.library.fitted_models import METRICS, FittedModels, ModelKind
+from app.services.library.kept_tree import KeptTree
 from app.store import identity
 from app.store.folders import warn_if_open
 from app.store.store import Store
@@ -39,7 +40,7 @@ class Library:
     clips, by the name of their scale; segments: the segments of all clips; poses: the pose covers
     of all clips; word_windows: the windows in which words are looked for, and window_words: their
     probabilities; the first search that needs paced or one of these four loads it. metrics: the
-    clips' coordinates in each learned metric.
+    clips' coordinates in each learned metric. tree: of the labels.
     """
 
     settings: Settings
@@ -59,6 +60,7 @@ class Library:
     word_windows: VectorIndex
     window_words: PartScores
     metrics: Mapping[ModelKind, ProjectedIndex]
+    tree: KeptTree
 
     @classmethod
     def open(cls, settings: Settings, *, prepare: bool = True) -> Self:
@@ -99,6 +101,7 @@ class Library:
             ),
             window_words=PartScores(),
             metrics={kind: ProjectedIndex(index) for kind in METRICS},
+            tree=KeptTree(),
         )
 
     def close(self) -> None:

@@ -186,9 +186,14 @@ def read_training_set(store: Store, filter: ClipFilter = READY) -> TrainingSet:
 
 
 def _teaches(clip: ClipRecord) -> bool:
-    """Whether models learn from a clip: it was recorded, and is no lower or upper body alone."""
+    """Whether models learn from a clip: it was recorded, and is no lower or upper body alone.
+
+    An edited copy teaches nothing new, and would be held out from its own original. If the original
+    was deleted, the copy takes its place.
+    """
     is_part = any(role.value in clip.missing_roles for role in ESSENTIAL_ROLES)
-    return not is_part and not is_synthesized(clip)
+    is_copy = clip.origin is not None and not clip.origin.is_deleted
+    return not is_part and not is_copy and not is_synthesized(clip)
 
 
 def recording_of_clip(clip: ClipRecord) -> str:

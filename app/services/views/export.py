@@ -31,6 +31,7 @@ from app.numerics.arrays import FloatArray, IntArray
 from app.services.library.library import Library
 from app.services.library.ready_clips import ready_clip
 from app.services.library.stored_motion import load_motion
+from app.services.views.clip_parts import Part, part_of_animation, part_of_motion
 from app.services.views.clip_rotations import own_animation, resampled, solved_animation
 from app.services.views.export_format import (
     ExportContent,
@@ -66,12 +67,13 @@ def export(
     skeleton: ExportSkeleton | str = ExportSkeleton.OWN,
     fps: float | None = None,
     reduction: Reduction | None = None,
+    part: Part | None = None,
 ) -> Export:
     """A clip as a file of `format`, resampled by time to `fps` (default: its own rate).
 
     content: the table of a CSV file (default: positions). unit: of lengths (default: that of the
     format). joints: all, or those with a role, by role. reduction: reduce the motion to few
-    dimensions, on the 13 joint roles, by default at 30 Hz.
+    dimensions, on the 13 joint roles, by default at 30 Hz. part: only these seconds of the clip.
 
     Raises BadField, ClipNotFound, ClipNotReady, NotEnoughKeyposes, NoGait.
     """
@@ -83,6 +85,7 @@ def export(
         skeleton=skeleton,
         fps=fps,
         reduction=reduction,
+        part=part,
     )
     clip = ready_clip(lib, clip_id)
     if options.content is not ExportContent.POSITIONS:
@@ -111,6 +114,7 @@ def _motion(lib: Library, clip: ClipRecord, options: ExportOptions) -> tuple[Mot
 def _blocks(
     lib: Library, clip: ClipRecord, options: ExportOptions, motion: Motion, rate: float, name: str
 ) -> Iterable[bytes]:
+    whole, motion = motion, part_of_motion(motion, options.part)
     if options.skeleton is ExportSkeleton.CANONICAL:
         animation = on_canonical_body(resampled(motion, rate))
         return _of_animation(options, animation, clip, name)
@@ -121,7 +125,8 @@ def _blocks(
         tracks = _Positions(motion.names, motion.parents, motion.positions, rate)
         return _of_positions(options, tracks, name)
     if options.reduction is None:
-        return _of_animation(options, own_animation(lib, clip, motion, rate), clip, name)
+        own = own_animation(lib, clip, whole, rate)
+        return _of_animation(options, part_of_animation(own, options.part), clip, name)
     return _of_animation(options, solved_animation(motion, rate), clip, name)
 
 

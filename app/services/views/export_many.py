@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from app.errors import ClipNotFound, ClipNotReady, NoGait, NotEnoughKeyposes
+from app.services.library.filters import resolved_filter
 from app.services.library.library import Library
 from app.services.views.export import export
 from app.services.views.exported import ClipExport, FileNames
@@ -20,8 +21,9 @@ LEFT_OUT = (ClipNotFound, ClipNotReady, NoGait, NotEnoughKeyposes)
 
 def ready_ids(lib: Library, filter: ClipFilter) -> tuple[str, ...]:
     """The ids of the ready clips that pass a filter."""
+    passing = resolved_filter(lib, filter)
     with lib.store.read() as tx:
-        return listing.list_ids(tx, replace(filter, state=(ClipState.READY,)))
+        return listing.list_ids(tx, replace(passing, state=(ClipState.READY,)))
 
 
 def export_each(lib: Library, clip_ids: Sequence[str], **options: Any) -> Iterator[ClipExport]:

@@ -8,6 +8,7 @@ from typing import TypeVar
 
 from app.motion.canonical.units import METERS_PER_UNIT
 from app.services import fields
+from app.services.views.clip_parts import Part
 from app.services.views.export_format import (
     ExportContent,
     ExportFormat,
@@ -32,7 +33,10 @@ _OF_POSITIONS = (_F.NPZ, _F.CSV, _F.C3D, _F.TRC)
 
 @dataclass(frozen=True, slots=True)
 class ExportOptions:
-    """Options that go together. fps: Hz, None for the clip's own rate. content: that of a CSV."""
+    """Options that go together. fps: Hz, None for the clip's own rate. content: that of a CSV.
+
+    part: only these seconds of the clip, None for all of it.
+    """
 
     format: ExportFormat
     content: ExportContent
@@ -41,6 +45,7 @@ class ExportOptions:
     skeleton: ExportSkeleton
     fps: float | None
     reduction: Reduction | None
+    part: Part | None = None
 
     @property
     def units_per_meter(self) -> float:
@@ -57,6 +62,7 @@ def checked_options(
     skeleton: ExportSkeleton | str = ExportSkeleton.OWN,
     fps: float | None = None,
     reduction: Reduction | None = None,
+    part: Part | None = None,
 ) -> ExportOptions:
     """The options of an export. Raises BadField for an unknown one, and for one that does not go
     with the format or the content."""
@@ -71,10 +77,13 @@ def checked_options(
         skeleton=_choice("skeleton", ExportSkeleton, skeleton),
         fps=fps,
         reduction=reduction,
+        part=part,
     )
     _check_format(options)
     if options.content is not _C.POSITIONS:
         _check_table(options)
+    if part is not None and (options.reduction or options.content is not _C.POSITIONS):
+        raise fields.bad_field("part", "goes with positions and rotations of all dimensions only")
     return options
 
 

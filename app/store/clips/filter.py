@@ -10,6 +10,7 @@ from sqlalchemy import ColumnElement, Select, String, and_, cast, func, or_, sel
 from app.store.clips import visibility
 from app.store.clips.measures import MEASURES
 from app.store.clips.record import ClipState
+from app.store.database.collection_tables import collection_items
 from app.store.database.tables import clip_metadata, clip_words, clips
 
 _LABELS = ("person", "task", "license", "source")
@@ -49,7 +50,9 @@ class ClipFilter:
 
     A tuple is true if the clip has any of its values. A tuple whose name begins with `not_` is
     true if the clip has none of its values; a clip without the label passes. An empty tuple and
-    None are no condition. folder: the clip's file was in the folder or below it; missing: labels
+    None are no condition. folder: the clip's file was in the folder or below it; collection: ids of
+    collections that hold the clip or a part of it; members: the ids of the clips in them, which a
+    search in memory needs (`services.library.filters`); missing: labels
     (`MISSABLE`) of which the clip lacks at least one; has_warnings: whether it has any; q: a part
     of the name, the path or a text of the metadata, in upper or lower case; min_NAME, max_NAME: of
     a measure (`measures.MEASURES`), both ends included. A search knows none of state, missing,
@@ -68,6 +71,8 @@ class ClipFilter:
     not_source: tuple[str, ...] = ()
     folder: tuple[str, ...] = ()
     not_folder: tuple[str, ...] = ()
+    collection: tuple[str, ...] = ()
+    members: tuple[str, ...] = ()
     metadata: tuple[MetadataCondition, ...] = ()
     state: tuple[ClipState, ...] = ()
     missing: tuple[str, ...] = ()
@@ -126,7 +131,15 @@ def id_sets(filter: ClipFilter) -> list[Select[tuple[str]]]:
     Conditions that refuse clips are left out.
     """
     accepted = [_holders(one) for one in filter.metadata if not one.is_negated]
+    if filter.collection:
+        accepted.append(_collected(filter.collection))
     return [*accepted, _carriers(filter.word)] if filter.word else accepted
+
+
+def _collected(collection_ids: tuple[str, ...]) -> Select[tuple[str]]:
+    """Ids of the clips that are in any of the collections."""
+    column = collection_items.c
+    return select(column.clip_id).where(column.collection_id.in_(collection_ids))
 
 
 def _lack_terms(filter: ClipFilter) -> Iterator[ColumnElement[bool]]:

@@ -65,6 +65,13 @@ def words(tx: Tx, source: str) -> tuple[CountBySource, ...]:
     return _counts(tx, _COLUMNS[LabelKind.WORD], source)
 
 
+def counts(tx: Tx, kind: LabelKind) -> dict[str, int]:
+    """The number of clips by label, of all labels of a kind."""
+    name = _COLUMNS[kind]
+    query = select(name, func.count()).where(name.is_not(None)).group_by(name).order_by(name)
+    return {label: int(count) for label, count in tx.execute(query).all()}
+
+
 def person_names(tx: Tx) -> frozenset[str]:
     """The names of all persons in the labels of clips."""
     query = select(clips.c.person).where(clips.c.person.is_not(None)).distinct()

@@ -131,6 +131,19 @@ class Difference:
     applied: bool
 
 
+@dataclass(frozen=True, slots=True)
+class ClipOrigin:
+    """Where an edited copy comes from.
+
+    clip_id: of the original; steps: the edits, in their order, each as an object with its `kind`;
+    is_deleted: whether the original was deleted since.
+    """
+
+    clip_id: str
+    steps: tuple[dict[str, Any], ...]
+    is_deleted: bool = False
+
+
 AnalysisInput = tuple[AnalysisHints, str | None]
 """The input of an analysis besides the motion file: the hints, and the recording's SHA-256."""
 
@@ -150,8 +163,9 @@ class ClipRecord(ClipLabels):
     begins, as the analysis estimates it; travel, speed, energy, tempo: see `measures.FOUND`;
     start_offset: seconds from the start of the motion file to the clip's first frame; reanalysis:
     the state of another analysis of a ready clip, None if there is none; is_changed: whether a
-    client has changed the hints or the recording since the analysis; changed_version: library
-    version of the last change that searches see, 0 if the clip was never ready.
+    client has changed the hints or the recording since the analysis; origin: of an edited copy,
+    None for any other clip; changed_version: library version of the last change that searches see,
+    0 if the clip was never ready.
     """
 
     id: str
@@ -186,6 +200,7 @@ class ClipRecord(ClipLabels):
     analysis_version: int | None
     reanalysis: Reanalysis | None
     is_changed: bool
+    origin: ClipOrigin | None
     changed_version: int
 
     @property
@@ -239,7 +254,8 @@ class NewClip:
     """A clip before its analysis; the caller has normalized the labels.
 
     path: as in `ClipRecord`; sent: the names of the labels and hints that came with the file
-    (`meta.KEY` for a key of the metadata), also of those without a value.
+    (`meta.KEY` for a key of the metadata), also of those without a value; origin: of an edited
+    copy.
     """
 
     sha256: str
@@ -251,6 +267,7 @@ class NewClip:
     audio: AttachedAudio | None = None
     path: str | None = None
     sent: frozenset[str] = frozenset()
+    origin: ClipOrigin | None = None
 
     @property
     def content_key(self) -> str:

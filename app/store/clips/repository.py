@@ -29,6 +29,7 @@ from app.store.clips.rows import (
     changed_input,
     changed_metadata,
     client_fields,
+    origin_columns,
     searched_text,
     to_columns,
     to_record,
@@ -211,6 +212,8 @@ def delete_clip(tx: Tx, clip_id: str) -> ClipRecord:
     if deleted.changed_version:  # otherwise no search has ever seen it
         library.record_deletion(tx, clip_id)
     tx.execute(delete(clips).where(clips.c.id == clip_id))
+    copies = update(clips).where(clips.c.origin_clip_id == clip_id)
+    tx.execute(copies.values(origin_deleted=True))
     return deleted
 
 
@@ -223,7 +226,8 @@ def in_batches(ids: Iterable[str], size: int = IDS_PER_QUERY) -> Iterator[list[s
 
 def _insert(tx: Tx, new: NewClip) -> ClipRecord:
     clip_id = new_id("clip")
-    values = to_columns(client_fields(new)) | {
+    values = to_columns(client_fields(new)) | origin_columns(new.origin)
+    values |= {
         "id": clip_id,
         "sha256": new.sha256,
         "file_name": new.file_name,

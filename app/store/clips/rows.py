@@ -20,6 +20,7 @@ from app.store.clips.record import (
     AttachedAudio,
     ClipChanges,
     ClipLabels,
+    ClipOrigin,
     ClipRecord,
     ClipState,
     ClipWarning,
@@ -131,6 +132,7 @@ def to_record(
         "warnings": tuple(ClipWarning(**warning) for warning in row["warnings"] or ()),
         "reanalysis": None if row["reanalysis"] is None else Reanalysis(row["reanalysis"]),
         "hints": _hints(row),
+        "origin": _origin(row),
         "audio": _audio(row),
     }
     return ClipRecord(**values)
@@ -150,6 +152,20 @@ def _audio(row: RowMapping) -> AttachedAudio | None:
         return None
     stored = {name: row[column] for name, column in _AUDIO_COLUMNS.items()}
     return AttachedAudio(**{name: value for name, value in stored.items() if value is not None})
+
+
+def origin_columns(origin: ClipOrigin | None) -> dict[str, Any]:
+    """The columns of a new clip's origin."""
+    if origin is None:
+        return {}
+    return {"origin_clip_id": origin.clip_id, "origin_steps": list(origin.steps)}
+
+
+def _origin(row: RowMapping) -> ClipOrigin | None:
+    if row["origin_clip_id"] is None:
+        return None
+    steps = tuple(row["origin_steps"] or ())
+    return ClipOrigin(row["origin_clip_id"], steps, is_deleted=row["origin_deleted"])
 
 
 def _frozen(value: Any) -> Any:

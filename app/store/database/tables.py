@@ -85,6 +85,11 @@ clips = Table(
     Column("analysis_version", Integer),
     Column("reanalysis", String, index=True),
     Column("is_changed", Boolean, nullable=False, server_default=false()),
+    # The clip of which this one is an edited copy: see `ClipOrigin`. No foreign key: the copy
+    # remains, and says that the original was deleted.
+    Column("origin_clip_id", String, index=True),
+    json_column("origin_steps"),
+    Column("origin_deleted", Boolean, nullable=False, server_default=false()),
     Column("changed_version", BigInteger, nullable=False, index=True),
     Column("created_at", UtcDateTime, nullable=False, index=True),
 )

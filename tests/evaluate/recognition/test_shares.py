@@ -7,9 +7,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from app.evaluate.recognition.clips import NO_TREE
 from app.evaluate.recognition.methods import NO_GUESS, Guess
-from app.evaluate.recognition.shares import Share, chance, confusion, recognized, unknown
+from app.evaluate.recognition.shares import (
+    Share,
+    chance,
+    confusion,
+    recognized,
+    task_in_tree,
+    unknown,
+)
 from app.evaluate.recognition.trials import FactorResult, Trial
+from app.models.words.language.label_tree import label_tree
 
 NOBODY = FactorResult(None, True, NO_GUESS, 0)
 
@@ -37,6 +46,21 @@ def test_shares_count_clips_whose_label_was_seen() -> None:
     found = recognized(trials)
     assert (found.task, found.person, found.both) == (Share(2, 3), Share(4, 5), Share(1, 3))
     assert chance(trials) == (0.25, 0.25, 0.0625)
+
+
+def test_an_error_within_a_branch_weighs_less() -> None:
+    """By hand: jog is move/run/jog, run is move/run, stand is alone."""
+    trials = [
+        trial(result("jog", "jog")),
+        trial(result("jog", "run")),
+        trial(result("jog", "stand")),
+        trial(result("hop", "run", new=True)),
+        trial(result(None, "walk")),
+    ]
+    tree = label_tree(["jog", "run", "stand"], {})
+    assert task_in_tree(trials, tree) == pytest.approx((1 + 4 / 5 + 0) / 3)
+    assert task_in_tree(trials, NO_TREE) == pytest.approx(recognized(trials).task.value)
+    assert task_in_tree([], tree) is None
 
 
 def test_without_judged_trials_there_is_no_share() -> None:

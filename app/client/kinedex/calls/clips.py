@@ -28,6 +28,7 @@ def list_clips(
     not_source: str | Sequence[str] | None = None,
     folder: str | Sequence[str] | None = None,
     not_folder: str | Sequence[str] | None = None,
+    collection: str | Sequence[str] | None = None,
     min_duration: float | None = None,
     max_duration: float | None = None,
     min_frame_rate: float | None = None,
@@ -78,10 +79,10 @@ def list_clips(
 ) -> Call[ClipList]:
     """List the clips that pass every filter. Repeat a label parameter to accept several values.
 
-    `meta.KEY=VALUE` filters by metadata, `not_meta.KEY=VALUE` leaves clips with that value out,
-    and `meta.KEY.min=30`, `meta.KEY.max=40` filter by a number; `GET /v1/metadata` lists the
-    keys.
+    `meta.KEY=VALUE` filters by metadata, `not_meta.KEY=VALUE` refuses a value, `meta.KEY.min=30`
+    and `meta.KEY.max=40` filter by a number (keys: `GET /v1/metadata`).
 
+    task: Kinds of it too, as of a word (`/v1/labels/tree`); none with = before it.
     not_person: Clips of none of these persons.
     not_task: Clips of none of these tasks.
     not_word: Clips with none of these words.
@@ -89,6 +90,7 @@ def list_clips(
     not_source: Clips from none of these sources.
     folder: Clips whose files were in this folder of an import, or below it.
     not_folder: Clips of none of these folders.
+    collection: Ids of collections: clips in any of them.
     min_duration: Seconds.
     max_duration: Seconds.
     min_frame_rate: Frames per second.
@@ -135,6 +137,7 @@ def list_clips(
             not_source=not_source,
             folder=folder,
             not_folder=not_folder,
+            collection=collection,
             min_duration=min_duration,
             max_duration=max_duration,
             min_frame_rate=min_frame_rate,

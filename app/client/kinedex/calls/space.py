@@ -27,6 +27,7 @@ def get_space(
     not_source: str | Sequence[str] | None = None,
     folder: str | Sequence[str] | None = None,
     not_folder: str | Sequence[str] | None = None,
+    collection: str | Sequence[str] | None = None,
     min_duration: float | None = None,
     max_duration: float | None = None,
     min_frame_rate: float | None = None,
@@ -48,6 +49,7 @@ def get_space(
 ) -> Call[SpaceMap]:
     """Every ready clip as a point in two or three dimensions. Similar clips are close together.
 
+    task: Kinds of it too, as of a word (`/v1/labels/tree`); none with = before it.
     not_person: Clips of none of these persons.
     not_task: Clips of none of these tasks.
     not_word: Clips with none of these words.
@@ -55,6 +57,7 @@ def get_space(
     not_source: Clips from none of these sources.
     folder: Clips whose files were in this folder of an import, or below it.
     not_folder: Clips of none of these folders.
+    collection: Ids of collections: clips in any of them.
     min_duration: Seconds.
     max_duration: Seconds.
     min_frame_rate: Frames per second.
@@ -96,6 +99,7 @@ def get_space(
             not_source=not_source,
             folder=folder,
             not_folder=not_folder,
+            collection=collection,
             min_duration=min_duration,
             max_duration=max_duration,
             min_frame_rate=min_frame_rate,
@@ -132,6 +136,7 @@ def get_space_columns(
     not_source: str | Sequence[str] | None = None,
     folder: str | Sequence[str] | None = None,
     not_folder: str | Sequence[str] | None = None,
+    collection: str | Sequence[str] | None = None,
     min_duration: float | None = None,
     max_duration: float | None = None,
     min_frame_rate: float | None = None,
@@ -153,6 +158,7 @@ def get_space_columns(
 ) -> Call[SpaceColumns]:
     """The same map as columns of numbers, to draw very many clips: each value is written once.
 
+    task: Kinds of it too, as of a word (`/v1/labels/tree`); none with = before it.
     not_person: Clips of none of these persons.
     not_task: Clips of none of these tasks.
     not_word: Clips with none of these words.
@@ -160,6 +166,7 @@ def get_space_columns(
     not_source: Clips from none of these sources.
     folder: Clips whose files were in this folder of an import, or below it.
     not_folder: Clips of none of these folders.
+    collection: Ids of collections: clips in any of them.
     min_duration: Seconds.
     max_duration: Seconds.
     min_frame_rate: Frames per second.
@@ -201,6 +208,7 @@ def get_space_columns(
             not_source=not_source,
             folder=folder,
             not_folder=not_folder,
+            collection=collection,
             min_duration=min_duration,
             max_duration=max_duration,
             min_frame_rate=min_frame_rate,

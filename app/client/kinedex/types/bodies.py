@@ -2,8 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NotRequired, TypedDict
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal, NotRequired, TypedDict
+
+from kinedex.types.choices import EditKind, Method
+
+
+class CollectionItemForm(TypedDict):
+    """A clip, or a part of it, to add to a collection.
+
+    start: Start of the part, seconds.
+    end: End of the part, seconds.
+    """
+
+    clip_id: str
+    start: NotRequired[float | None]
+    end: NotRequired[float | None]
+    notes: NotRequired[str]
 
 
 class AcceptedSpan(TypedDict):
@@ -23,6 +38,7 @@ class Filter(TypedDict):
     `meta.KEY=VALUE` filters by the metadata of the clips, `not_meta.KEY=VALUE` leaves clips with
     that value out, and `meta.KEY.min=30`, `meta.KEY.max=40` filter by a number.
 
+    task: Kinds of it too, as of a word (`/v1/labels/tree`); none with = before it.
     not_person: Clips of none of these persons.
     not_task: Clips of none of these tasks.
     not_word: Clips with none of these words.
@@ -30,6 +46,7 @@ class Filter(TypedDict):
     not_source: Clips from none of these sources.
     folder: Clips whose files were in this folder of an import, or below it.
     not_folder: Clips of none of these folders.
+    collection: Ids of collections: clips in any of them.
     min_duration: Seconds.
     max_duration: Seconds.
     min_frame_rate: Frames per second.
@@ -58,6 +75,7 @@ class Filter(TypedDict):
     not_source: NotRequired[str | Sequence[str] | None]
     folder: NotRequired[str | Sequence[str] | None]
     not_folder: NotRequired[str | Sequence[str] | None]
+    collection: NotRequired[str | Sequence[str] | None]
     min_duration: NotRequired[float | None]
     max_duration: NotRequired[float | None]
     min_frame_rate: NotRequired[float | None]
@@ -107,3 +125,49 @@ class SearchExample(TypedDict):
     end: NotRequired[float | None]
     weight: NotRequired[float]
     against: NotRequired[bool]
+
+
+class ComposedSearch(TypedDict):
+    """Find motions by examples and words together; one of them must be for something.
+
+    method: How examples are compared. fused, dtw, msv-dtw and msv-xcorr are exact for the 300
+    clips that fit best by vectors and words; the others follow in that order. One example alone
+    is compared with every clip, as in a search by example.
+    mode: How clips are ranked by words, as in a search by words.
+    limit: Maximum number of items in one answer.
+    include_self: Whether the examples' clips may be hits.
+    examples: Motions that hits are like, or are not like.
+    words: Words, phrases or sentences, as in a search by words. Together they count like one
+    example of weight 1. A word with a minus before it (-left) leaves out the clips that carry
+    it.
+    """
+
+    method: NotRequired[Method]
+    mode: NotRequired[Literal["default", "cca", "printed"]]
+    limit: NotRequired[int]
+    include_self: NotRequired[bool]
+    filter: NotRequired[Filter | Mapping[str, Any] | None]
+    cursor: NotRequired[str | None]
+    examples: NotRequired[Sequence[SearchExample]]
+    words: NotRequired[Sequence[str]]
+
+
+class Step(TypedDict):
+    """One step of an edit.
+
+    kind: cut: keep the part from `start` to `end`. mirror: exchange left and right, also in the
+    labels. resample: another frame rate, `fps`. in_place: remove the horizontal path of the
+    hips. loop: keep the best loop, with its end blended into its beginning.
+    start: Of a cut: seconds of the motion before this step; default: its start.
+    end: Of a cut: seconds; default: the end.
+    fps: Of resample: frames per second.
+    min_seconds: Of a loop: the shortest; default: 0.5 s.
+    max_seconds: Of a loop: the longest; default: any.
+    """
+
+    kind: EditKind
+    start: NotRequired[float | None]
+    end: NotRequired[float | None]
+    fps: NotRequired[float | None]
+    min_seconds: NotRequired[float | None]
+    max_seconds: NotRequired[float | None]

@@ -16,6 +16,9 @@ Choice: TypeAlias = Literal["left", "right", "same"]
 ClipState: TypeAlias = Literal["queued", "processing", "ready", "failed"]
 
 
+EditKind: TypeAlias = Literal["cut", "mirror", "resample", "in_place", "loop"]
+
+
 EvaluationKind: TypeAlias = Literal[
     "recognition", "retrieval", "words", "keyposes", "low-dimensional", "symbols"
 ]
@@ -82,6 +85,9 @@ JointRole: TypeAlias = Literal[
 
 
 KeyRole: TypeAlias = Literal["read", "write", "admin"]
+
+
+LinkKind: TypeAlias = Literal["people", "phrase", "inflection", "lexicon"]
 
 
 MatchesPerClip: TypeAlias = Literal["best", "all"]

@@ -4,12 +4,28 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from datetime import datetime
+from typing import Any
 
 from kinedex.records import Page, Record
 from kinedex.types.choices import ClipState, Reanalysis
 from kinedex.types.clip_remarks import ClipWarning, Difference
 from kinedex.types.jobs import Job
 from kinedex.types.problem import Problem
+
+
+@dataclass(frozen=True, slots=True)
+class ClipOrigin(Record):
+    """Where an edited copy comes from.
+
+    clip_id: The id of the original.
+    deleted: Whether the original was deleted since.
+    steps: The edits in their order, each with its `kind`. Those that keep a part have its
+    `start` and `end`, seconds of the motion before the step.
+    """
+
+    clip_id: str
+    deleted: bool
+    steps: list[dict[str, Any]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +55,7 @@ class Clip(Record):
     reanalysis: State of a new analysis of a ready clip, after a change of the clip or of
     Kinedex. It is null when the new analysis is done. Until then, searches use the earlier
     analysis. After `failed` they still use it, and a warning gives the reason.
+    origin: Of a clip that an edit made (`POST /v1/clips/{id}/edits`), else null.
     """
 
     id: str
@@ -72,6 +89,7 @@ class Clip(Record):
     audio_offset: float | None
     error: Problem | None
     reanalysis: Reanalysis | None
+    origin: ClipOrigin | None
 
 
 @dataclass(frozen=True, slots=True)

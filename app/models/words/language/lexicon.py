@@ -236,6 +236,31 @@ def is_kind(word: str, broad: str) -> bool:
     return own == other or other in _broader().get(own, frozenset())
 
 
+def parent(word: str) -> str | None:
+    """The first word with the meaning of `word`; for that one, the first of the broader meaning.
+
+    None for the broadest meanings and for unknown words.
+    """
+    meaning = _meaning_of().get(word)
+    if meaning is None:
+        return None
+    words = _first_words()
+    if word != words[meaning]:
+        return words[meaning]
+    # a kind of several meanings goes under the one that the lexicon names first
+    broader = min(_broader().get(meaning, frozenset()), default=None)
+    return None if broader is None else words[broader]
+
+
+@cache
+def _first_words() -> dict[int, str]:
+    """The first word of each meaning."""
+    first: dict[int, str] = {}
+    for word, number in _meaning_of().items():
+        first.setdefault(number, word)
+    return first
+
+
 @cache
 def _too_broad() -> frozenset[int]:
     """Meanings that are so broad that their kinds need not be similar: walking is not jumping."""

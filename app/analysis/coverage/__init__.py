@@ -1,0 +1,1 @@
+"""What a set of motions covers: speeds, turns, directions."""

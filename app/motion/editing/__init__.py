@@ -1,0 +1,1 @@
+"""Edits of a motion: cut, mirror, resample, in place, loop."""

@@ -1,0 +1,1 @@
+"""Collections: named sets of clips or parts of clips, their export and their statistics."""

@@ -1,0 +1,1 @@
+"""Edits of clips that make new clips."""
