@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from app.motion.roles.joint_roles import JointRole
+from app.motion.roles.sided_texts import with_case_of
 from app.numerics.arrays import IntArray
 
 _OTHER_SIDE = {"left": "right", "right": "left", "l": "r", "r": "l"}
@@ -44,11 +45,3 @@ def _mirrored_names(name: str) -> Iterator[str]:
     """The names that the joint on the other side may have; each changes one mark."""
     for mark in _MARK.finditer(name):
         yield name[: mark.start()] + with_case_of(mark[0], _OTHER_SIDE) + name[mark.end() :]
-
-
-def with_case_of(text: str, replacements: Mapping[str, str]) -> str:
-    """The replacement of a text, in upper case, in title case or in lower case, as the text is."""
-    replacement = replacements[text.lower()]
-    if text.isupper():
-        return replacement.upper()
-    return replacement.capitalize() if text[:1].isupper() else replacement

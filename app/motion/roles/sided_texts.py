@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 
 _OTHER = {
     "left": "right",
@@ -26,11 +27,12 @@ _SIDED = re.compile(
 
 def exchanged(text: str) -> str:
     """The text with left and right exchanged, and the turns clockwise and counterclockwise."""
-    return _SIDED.sub(lambda found: _with_case_of(found[0]), text)
+    return _SIDED.sub(lambda found: with_case_of(found[0], _OTHER), text)
 
 
-def _with_case_of(word: str) -> str:
-    other = _OTHER[word.lower()]
-    if word.isupper():
-        return other.upper()
-    return other.capitalize() if word[0].isupper() else other
+def with_case_of(text: str, replacements: Mapping[str, str]) -> str:
+    """The replacement of a text, in upper case, in title case or in lower case, as the text is."""
+    replacement = replacements[text.lower()]
+    if text.isupper():
+        return replacement.upper()
+    return replacement.capitalize() if text[:1].isupper() else replacement

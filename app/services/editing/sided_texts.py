@@ -2,35 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 
-from app.motion.editing.mirrored_joints import with_case_of
+from app.motion.roles.sided_texts import exchanged
 from app.store.clips.record import ClipLabels
-
-_OTHER = {
-    "left": "right",
-    "right": "left",
-    "leftward": "rightward",
-    "rightward": "leftward",
-    "leftwards": "rightwards",
-    "rightwards": "leftwards",
-    "clockwise": "counterclockwise",
-    "counterclockwise": "clockwise",
-    "anticlockwise": "clockwise",
-    "counter-clockwise": "clockwise",
-    "anti-clockwise": "clockwise",
-}
-_SIDED = re.compile(
-    r"(?<![A-Za-z])(" + "|".join(sorted(_OTHER, key=len, reverse=True)) + r")(?-i:(?![a-z]))",
-    re.IGNORECASE,
-)
-"""Whole words, also in `left_leg`, `LeftLeg` and `left-handed`, and not in `upright`."""
-
-
-def exchanged(text: str) -> str:
-    """The text with left and right exchanged, and the turns clockwise and counterclockwise."""
-    return _SIDED.sub(lambda found: with_case_of(found[0], _OTHER), text)
 
 
 def exchanged_labels(labels: ClipLabels) -> ClipLabels:

@@ -16,6 +16,13 @@ from app.motion.roles.sided_texts import exchanged
         ("turns clockwise", "turns counterclockwise"),
         ("stands upright, leftovers", "stands upright, leftovers"),
         ("from left to right", "from right to left"),
+        ("right leg kick", "left leg kick"),
+        ("left_leg", "right_leg"),
+        ("from LEFT to right", "from RIGHT to left"),
+        ("left-handed, upright", "right-handed, upright"),
+        ("turns anti-clockwise", "turns clockwise"),
+        ("bright, leftover, cleft", "bright, leftover, cleft"),
+        ("steps leftwards", "steps rightwards"),
     ],
 )
 def test_sides_are_exchanged(text: str, other: str) -> None:

@@ -2,28 +2,8 @@
 
 from __future__ import annotations
 
-import pytest
-
-from app.services.editing.sided_texts import exchanged, exchanged_labels
+from app.services.editing.sided_texts import exchanged_labels
 from app.store.clips.record import ClipLabels
-
-
-@pytest.mark.parametrize(
-    ("text", "other"),
-    [
-        ("right leg kick", "left leg kick"),
-        ("left_leg", "right_leg"),
-        ("LeftLeg", "RightLeg"),
-        ("from LEFT to right", "from RIGHT to left"),
-        ("left-handed, upright", "right-handed, upright"),
-        ("turns clockwise", "turns counterclockwise"),
-        ("turns anti-clockwise", "turns clockwise"),
-        ("bright, leftover, cleft", "bright, leftover, cleft"),
-        ("steps leftwards", "steps rightwards"),
-    ],
-)
-def test_sides_change_and_nothing_else(text: str, other: str) -> None:
-    assert exchanged(text) == other
 
 
 def test_labels_are_exchanged_but_for_person_license_and_source() -> None:
