@@ -13,6 +13,7 @@ from app.analysis.descriptors.active_part import FAST_QUANTILE, joint_speed
 from app.motion.frame.body_frame import BodyTrack
 from app.motion.skeleton.resampling import resample
 from app.numerics.arrays import FloatArray
+from app.numerics.quantiles import quantile
 
 COMMON_PACE = 1.0
 """Body lengths per second (1.3 m/s), the root mean square over the joints: about a walk."""
@@ -23,7 +24,7 @@ MAX_CHANGE = 5.0
 
 def at_common_pace(track: BodyTrack) -> BodyTrack:
     """`track` played so that its fast moments have COMMON_PACE, at the same frame rate."""
-    pace = float(np.quantile(joint_speed(track), FAST_QUANTILE))
+    pace = float(quantile(joint_speed(track), FAST_QUANTILE))
     # the bounds of the divisor are those of the change, and exclude 0
     change = COMMON_PACE / float(np.clip(pace, COMMON_PACE / MAX_CHANGE, COMMON_PACE * MAX_CHANGE))
     change = min(change, track.frames - 1.0)  # two frames stay, without which nothing moves

@@ -19,6 +19,8 @@ import numpy as np
 from app.motion.frame.body_frame import BodyTrack
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray
+from app.numerics.differences import central_differences
+from app.numerics.quantiles import median, quantile, quantiles
 
 _R = JointRole
 
@@ -62,7 +64,7 @@ STILL = 0.2
 
 def movement_signs(track: BodyTrack) -> FloatArray:
     """(44,) the SIGNS of a motion of n >= 2 frames."""
-    speeds = np.linalg.norm(np.gradient(track.local, axis=0), axis=2) * track.rate  # (n, 13)
+    speeds = np.linalg.norm(central_differences(track.local), axis=2) * track.rate  # (n, 13)
     parts = (_turning(track), _travel(track), _height(track), _rhythm(track), _limbs(track, speeds))
     means = _log(speeds[:, [SUN_ROLES.index(role) for role in SPEED_ROLES]].mean(axis=0))
     return np.concatenate([*parts, means])
@@ -88,23 +90,23 @@ def _travel(track: BodyTrack) -> FloatArray:
     moved = (track.origin[-1] - track.origin[0])[[0, 2]] / track.body_length
     straightness = np.hypot(*moved) / (0.3 + mean * track.duration)
     shares = np.array([forward, left, aside]) / (STILL + mean)
-    return np.array([_log(mean), _log(np.quantile(speed, 0.95)), *shares, straightness])
+    return np.array([_log(mean), _log(quantile(speed, 0.95)), *shares, straightness])
 
 
 def _height(track: BodyTrack) -> FloatArray:
     """Height and share of flight; rise and drop of the hips; their median and lowest height."""
     heights = track.positions[:, :, 1] / track.body_length
-    floor = np.quantile(heights.min(axis=1), FLOOR_QUANTILE)
+    floor = quantile(heights.min(axis=1), FLOOR_QUANTILE)
     lower_foot = _of(heights, _R.LEFT_FOOT, _R.RIGHT_FOOT).min(axis=1) - floor
     hips = _of(heights, _R.HIPS)[:, 0]
-    low, median, high = np.quantile(hips, (LOW, 0.5, HIGH))
+    low, middle, high = (float(at) for at in quantiles(hips, (LOW, 0.5, HIGH)))
     return np.array(
         [
-            np.log(0.02 + max(float(np.quantile(lower_foot, HIGH)), 0.0)),
+            np.log(0.02 + max(float(quantile(lower_foot, HIGH)), 0.0)),
             np.sqrt((lower_foot > IN_AIR).mean()),
-            np.log(0.03 + high - median),
-            np.log(0.03 + median - low),
-            median - floor,
+            np.log(0.03 + high - middle),
+            np.log(0.03 + middle - low),
+            middle - floor,
             low - floor,
         ]
     )
@@ -154,7 +156,7 @@ def _limbs(track: BodyTrack, speeds: FloatArray) -> FloatArray:
     foot = _of(heights, _R.LEFT_FOOT, _R.RIGHT_FOOT)
     knee = _of(heights, _R.LEFT_KNEE, _R.RIGHT_KNEE)
     neck = _of(local, _R.NECK)[:, 0]
-    peaks = [_log(np.quantile(pair.max(axis=1), HIGH)) for pair in (hands, feet)]
+    peaks = [_log(quantile(pair.max(axis=1), HIGH)) for pair in (hands, feet)]
     sides = [np.subtract(*_log(pair.mean(axis=0))) for pair in (hands, feet)]
     return np.array(
         [
@@ -162,12 +164,12 @@ def _limbs(track: BodyTrack, speeds: FloatArray) -> FloatArray:
             _log(feet.mean()),
             *peaks,
             *sides,
-            np.quantile(above_neck.max(axis=1), 0.95),
+            quantile(above_neck.max(axis=1), 0.95),
             above_neck.max(axis=1).mean(),
-            np.quantile(above_neck.min(axis=1), 0.95),
-            np.quantile(foot.max(axis=1), HIGH) - np.median(foot),
-            np.quantile(knee.max(axis=1), HIGH),
-            np.quantile(np.hypot(neck[:, 0], neck[:, 2]), 0.95),
+            quantile(above_neck.min(axis=1), 0.95),
+            quantile(foot.max(axis=1), HIGH) - median(foot.ravel()),
+            quantile(knee.max(axis=1), HIGH),
+            quantile(np.hypot(neck[:, 0], neck[:, 2]), 0.95),
             neck[:, 2].mean(),
             _apart(local, _R.LEFT_HAND, _R.RIGHT_HAND, 0.9),
             _apart(local, _R.LEFT_FOOT, _R.RIGHT_FOOT, 0.95),
@@ -175,9 +177,9 @@ def _limbs(track: BodyTrack, speeds: FloatArray) -> FloatArray:
     )
 
 
-def _apart(local: FloatArray, one: JointRole, other: JointRole, quantile: float) -> float:
+def _apart(local: FloatArray, one: JointRole, other: JointRole, share: float) -> float:
     line = _of(local, one)[:, 0] - _of(local, other)[:, 0]
-    return float(np.quantile(np.linalg.norm(line, axis=1), quantile))
+    return float(quantile(np.linalg.norm(line, axis=1), share))
 
 
 def _of(values: FloatArray, *roles: JointRole) -> FloatArray:

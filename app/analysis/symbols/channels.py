@@ -15,6 +15,7 @@ import numpy as np
 from app.motion.frame.body_frame import BodyTrack
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray
+from app.numerics.quantiles import quantile, quantiles
 
 _R = JointRole
 
@@ -92,7 +93,7 @@ def symbol_statistics(features: FloatArray, rate: float) -> FloatArray:
     change = np.zeros(features.shape[1])
     if len(features) > 1:
         change = np.abs(np.diff(features, axis=0)).mean(axis=0) * rate
-    low, high = np.quantile(features, EXTREMES, axis=0)
+    low, high = quantiles(features, EXTREMES)
     seconds = len(features) / rate
     parts = [features.mean(axis=0), features.std(axis=0), change, low, high]
     return np.concatenate([*parts, [np.log(seconds)]])
@@ -136,7 +137,7 @@ def _trunk_channels(track: BodyTrack) -> FloatArray:
 def _height(track: BodyTrack) -> FloatArray:
     """(n,) the height of the hips above the floor of the clip, body lengths."""
     lowest = track.positions[:, :, 1].min(axis=1)
-    floor = np.quantile(lowest, FLOOR_QUANTILE)
+    floor = quantile(lowest, FLOOR_QUANTILE)
     return np.asarray((track.origin[:, 1] - floor) / track.body_length)
 
 
