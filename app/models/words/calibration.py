@@ -28,7 +28,7 @@ from app.numerics.arrays import FloatArray
 from app.numerics.isotonic import rising_means
 
 FOLDS = 5
-MAX_CLIPS = 1000
+MAX_CLIPS = 2000
 """Largest number of clips of the calibration; more do not change the curve."""
 SMOOTHING = 1e-3
 """Share of a logistic curve in the calibration, so that it rises strictly also beyond the held-out

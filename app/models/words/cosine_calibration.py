@@ -29,7 +29,7 @@ from app.models.words.correlated_space import (
 from app.numerics.arrays import FloatArray
 
 FOLDS = 5
-MAX_CLIPS = 1000
+MAX_CLIPS = 2000
 """Largest number of clips of the calibration; more clips change its three numbers very little."""
 
 LEVELS, SLOPES, WEIGHTS = (-10.0, 10.0), (0.05, 50.0), (0.0, 2.0)
