@@ -49,7 +49,7 @@ from app.analysis.segments.keypose_arrays import keypose_arrays
 from app.analysis.stage_times import StageTimes
 from app.analysis.symbols.channels import symbol_features, symbol_statistics
 from app.analysis.symbols.symbol import SYMBOL_ARRAYS, describe_symbol
-from app.motion.frame.body_frame import BodyTrack, body_track, smooth_track
+from app.motion.frame.body_frame import BodyTrack, both_tracks, smooth_track
 from app.motion.frame.gait import exact_gait_cycles
 from app.motion.frame.posed_start import posed_frames
 from app.motion.motion import Motion
@@ -96,8 +96,8 @@ def analyze(
     """
     times = times or StageTimes()
     with times.stage("describe"):
-        track = body_track(motion)
-        parts = _Parts(smooth_track(motion))
+        track, smooth = both_tracks(motion)
+        parts = _Parts(smooth)
         arrays: dict[str, NDArray[Any]] = {**_for_search(parts)}
         arrays |= word_window_arrays(parts.track, symbol_features(parts.track))
     with times.stage("symbol"):
@@ -170,7 +170,8 @@ class _Parts:
     @cached_property
     def described(self) -> FloatArray:
         """(3606,) the numbers from which motion vectors are projected."""
-        return describe(frame_features(self.active))
+        is_whole = self.active.frames == self.track.frames
+        return describe(self.features if is_whole else frame_features(self.active))
 
     @cached_property
     def paced_vector(self) -> FloatArray:

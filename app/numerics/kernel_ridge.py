@@ -15,6 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from app.numerics.arrays import FloatArray
 from app.numerics.euclidean import squared_distances
@@ -140,7 +141,7 @@ def _solve(
     """(m, q) the weights of the centers; the exact solution if all rows are centers."""
     among = gaussian_kernel(centers, centers, width)
     if len(centers) == len(rows):
-        return np.asarray(np.linalg.solve(among + penalty * np.eye(len(rows)), outputs))
+        return _solved(among + penalty * np.eye(len(rows)), outputs)
     normal, target = penalty * among, np.zeros((len(centers), outputs.shape[1]))
     for first in range(0, len(rows), _BLOCK):
         block = gaussian_kernel(rows[first : first + _BLOCK], centers, width)
@@ -148,4 +149,10 @@ def _solve(
         target += block.T @ outputs[first : first + _BLOCK]
     # centers that are nearly equal would make the matrix singular
     jitter = 1e-8 * float(np.trace(normal)) / len(centers)
-    return np.asarray(np.linalg.solve(normal + jitter * np.eye(len(centers)), target))
+    return _solved(normal + jitter * np.eye(len(centers)), target)
+
+
+def _solved(positive: FloatArray, outputs: FloatArray) -> FloatArray:
+    """(m, q) the solution for a positive definite matrix (m, m), in half the time of any other."""
+    factor = scipy.linalg.cho_factor(positive, overwrite_a=True, check_finite=False)
+    return np.asarray(scipy.linalg.cho_solve(factor, outputs, check_finite=False))

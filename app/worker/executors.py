@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 
 from app.kinedex_error import KinedexError
 from app.logs import level_of_process
+from app.models.keyposes.thresholds import Thresholds
 from app.services.children.pool import ChildPool
 from app.services.children.processes import log_like_parent
 from app.services.children.progress_file import ProgressFile
@@ -45,10 +46,15 @@ class JobExecutors:
         )
         self._threads = ThreadPoolExecutor(1, thread_name_prefix="import")
 
-    def begin(self, claimed: ClaimedJob, clip: ClipRecord | None) -> RunningJob:
-        """Begin a job. clip: of an ingest job, as it is stored now; None for other jobs."""
+    def begin(
+        self, claimed: ClaimedJob, clip: ClipRecord | None, thresholds: Thresholds | None = None
+    ) -> RunningJob:
+        """Begin a job. clip: of an ingest job, as it is stored now; None for other jobs.
+
+        thresholds: of the keyposes of the clip, by default those of the library.
+        """
         if clip is not None:
-            return self._begin_ingest(claimed, clip)
+            return self._begin_ingest(claimed, clip, thresholds)
         if claimed.job.kind is JobKind.IMPORT:
             return self._begin_import(claimed)
         if claimed.job.kind is JobKind.EVALUATE:
@@ -64,9 +70,11 @@ class JobExecutors:
         self._analyses.close()
         self._threads.shutdown()
 
-    def _begin_ingest(self, claimed: ClaimedJob, clip: ClipRecord) -> RunningJob:
+    def _begin_ingest(
+        self, claimed: ClaimedJob, clip: ClipRecord, thresholds: Thresholds | None
+    ) -> RunningJob:
         try:
-            request = ingest.analysis_request(self.lib, clip)
+            request = ingest.analysis_request(self.lib, clip, thresholds)
             # The kernel kills a process when memory is short, and that process may not be the one
             # that needs it. A job that was killed often is therefore tried without others.
             is_alone = claimed.kills >= outcomes.MAX_KILLS

@@ -21,7 +21,9 @@ from typing import Any
 from app.config import Settings
 from app.errors import LeaseLost, NotFound, StorageError
 from app.logs import job_id
+from app.models.keyposes.thresholds import Thresholds
 from app.services.clips import persons, reanalysis
+from app.services.library.keypose_thresholds import library_thresholds
 from app.services.library.library import Library
 from app.services.training import models, refit
 from app.store.clips import repository as clips
@@ -40,8 +42,13 @@ from app.worker.sweeps import Sweeps
 
 _log = logging.getLogger(__name__)
 
-READ_AHEAD = 3
+READ_AHEAD = 4
 """Clips claimed for each analysis process, so that none is idle while results are stored."""
+KEPT_BUSY = 2
+"""While more clips than this are claimed for each analysis process, results may wait for others to
+be stored with them: a transaction costs as much CPU as a clip in it."""
+MAX_GATHER_S = 0.2
+"""The longest time that a result waits for others."""
 FIT_CHECK_S = 2.0
 """Time between two checks whether a fit is due, while there is nothing else to do."""
 STOP_TIMEOUT_S = 10.0
@@ -149,6 +156,8 @@ class Worker:
         finished = [running for running in self._running if running.future.done()]
         if not finished and not self._is_work_waiting():
             return False
+        # Before any job is claimed: after a failure here, no job must be left claimed.
+        thresholds = library_thresholds(self.lib)
         with self.lib.store.write() as tx:
             self._settle_all(tx, finished)
             claimed = self._claim_all(tx, without=finished)
@@ -156,7 +165,7 @@ class Worker:
             clip_of = clips.get_many(tx, ids)
         self._running = [running for running in self._running if running not in finished]
         for each in claimed:
-            self._begin(each, clip_of.get(each.clip_id or ""))
+            self._begin(each, clip_of.get(each.clip_id or ""), thresholds)
         return bool(finished or claimed)
 
     def _settle_all(self, tx: Tx, finished: list[RunningJob]) -> None:
@@ -250,10 +259,10 @@ class Worker:
             kinds += [kind for kind in _ONE_AT_A_TIME if kind not in running_kinds]
         return kinds
 
-    def _begin(self, claimed: ClaimedJob, clip: ClipRecord | None) -> None:
+    def _begin(self, claimed: ClaimedJob, clip: ClipRecord | None, thresholds: Thresholds) -> None:
         if claimed.job.kind in _ONE_AT_A_TIME and not self._running:
             self.executors.rest()  # they need much memory
-        self._running.append(self.executors.begin(claimed, clip))
+        self._running.append(self.executors.begin(claimed, clip, thresholds))
 
     def _may_fit(self) -> bool:
         """Whether nothing runs but an evaluation: a fit does not wait for its end."""
@@ -274,12 +283,23 @@ class Worker:
                 models.enqueue_fit(tx)
 
     def _wait(self, stop: threading.Event) -> None:
-        """Wait until a job finishes, or until it is time to look for work again."""
+        """Wait until jobs finish, or until it is time to look for work again."""
         pause = self.lib.settings.job_poll_s
-        if self._running:
-            wait(_futures(self._running), timeout=pause, return_when=FIRST_COMPLETED)
-        else:
+        if not self._running:
             stop.wait(pause)
+            return
+        wait(_futures(self._running), timeout=pause, return_when=FIRST_COMPLETED)
+        self._gather()
+
+    def _gather(self) -> None:
+        """Wait for more finished jobs while the analysis processes have enough to do."""
+        end = time.monotonic() + MAX_GATHER_S
+        while (left := end - time.monotonic()) > 0:
+            futures = [future for future in _futures(self._running) if not future.done()]
+            are_none_done = len(futures) == len(self._running)
+            if are_none_done or len(futures) <= KEPT_BUSY * self.executors.slots:
+                return
+            wait(futures, timeout=left, return_when=FIRST_COMPLETED)
 
 
 def _futures(running: Iterable[RunningJob]) -> list[Future[Any]]:

@@ -12,6 +12,7 @@ import numpy as np
 from app.analysis.energy.energy import velocities
 from app.motion.frame.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray
+from app.numerics.quantiles import quantile
 
 MAX_IDLE_SPEED = 0.1
 """Body lengths per second (13 cm/s), the root mean square over the joints. People who stand sway
@@ -35,7 +36,7 @@ MIN_SECONDS = 0.5
 def active_span(track: BodyTrack) -> tuple[int, int]:
     """The first frame of the active part of `track`, and the frame after its last."""
     speed = joint_speed(track)
-    limit = max(MAX_IDLE_SPEED, MAX_IDLE_SHARE * float(np.quantile(speed, FAST_QUANTILE)))
+    limit = max(MAX_IDLE_SPEED, MAX_IDLE_SHARE * float(quantile(speed, FAST_QUANTILE)))
     moving = np.flatnonzero(speed > limit)
     if not len(moving):
         return 0, track.frames

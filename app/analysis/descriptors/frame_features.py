@@ -12,6 +12,7 @@ import numpy as np
 from app.motion.frame.body_frame import BodyTrack
 from app.motion.skeleton.resampling import resample
 from app.numerics.arrays import FloatArray
+from app.numerics.differences import central_differences
 
 FEATURES = 82
 VELOCITY_STEP = 1 / 3
@@ -36,7 +37,7 @@ TRAVEL = slice(78, 82)
 def frame_features(track: BodyTrack) -> FloatArray:
     """(n, 82) float64 features of each frame of `track`, in the order and units of the module."""
     positions = track.local.reshape(track.frames, -1)
-    changes = np.asarray(np.gradient(positions, axis=0))
+    changes = central_differences(positions)
     changes *= track.rate * VELOCITY_STEP * VELOCITY_WEIGHT
     return np.hstack([positions, changes, track.velocity(), track.yaw_rate()[:, None]])
 

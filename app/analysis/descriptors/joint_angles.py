@@ -21,6 +21,7 @@ import scipy
 
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.skeleton.occlusion import MAX_GAP, runs
+from app.motion.skeleton.rotations import cross
 from app.numerics.arrays import BoolArray, FloatArray
 
 MIN_BEND = np.radians(12.0)
@@ -123,11 +124,11 @@ def _ball_angles(upper: FloatArray, lower: FloatArray, max_gap: int) -> FloatArr
 
     upper, lower: (4, n, 3) the directions of both limbs in the trunk's frame.
     """
-    axis = np.cross(upper, lower)
+    axis = cross(upper, lower)
     sine, cosine = np.linalg.norm(axis, axis=-1), (upper * lower).sum(axis=-1)
     has_length = _has_direction(upper) & _has_direction(lower)
     hinges = rotated_with(HINGES, RESTS, upper)
-    turns = np.arctan2((np.cross(hinges, axis) * upper).sum(axis=-1), (hinges * axis).sum(axis=-1))
+    turns = np.arctan2((cross(hinges, axis) * upper).sum(axis=-1), (hinges * axis).sum(axis=-1))
     seen = has_length & (sine > np.sin(MIN_BEND))
     turns = np.stack([with_gaps_filled(*each, max_gap) for each in zip(turns, seen, strict=True)])
     bends = np.arctan2(sine, cosine) * has_length
@@ -141,7 +142,7 @@ def _swing(limbs: FloatArray, rest: FloatArray, about: FloatArray) -> FloatArray
     The first component is the turn about the axis `about`, which is orthogonal to `rest`. The
     second is the part toward that axis.
     """
-    ahead = np.cross(about, rest)
+    ahead = cross(about, rest)
     forward, aside = (limbs * ahead).sum(axis=-1), (limbs * about).sum(axis=-1)
     sine = np.hypot(forward, aside)
     angle = np.arctan2(sine, (limbs * rest).sum(axis=-1))
@@ -152,10 +153,10 @@ def _swing(limbs: FloatArray, rest: FloatArray, about: FloatArray) -> FloatArray
 def rotated_with(vectors: FloatArray, starts: FloatArray, ends: FloatArray) -> FloatArray:
     """(k, n, 3) `vectors` (k, 1, 3) turned by the smallest rotations that bring `starts`
     (k, 1, 3) to `ends` (k, n, 3)."""
-    axis = np.cross(starts, ends)
+    axis = cross(starts, ends)
     cosine = (ends * starts).sum(axis=-1, keepdims=True)
     share = (axis * vectors).sum(axis=-1, keepdims=True) / np.maximum(1.0 + cosine, _TINY)
-    return np.asarray(cosine * vectors + np.cross(axis, vectors) + share * axis)
+    return np.asarray(cosine * vectors + cross(axis, vectors) + share * axis)
 
 
 def _limb(
@@ -193,8 +194,8 @@ def _left(positions: FloatArray) -> FloatArray:
 
 def frame_of(up: FloatArray, left: FloatArray) -> FloatArray:
     """(n, 3, 3) rows left, up, forward: `up` (n, 3), and the part of `left` (n, 3) across it."""
-    forward = _unit(np.cross(left, up), np.array([0.0, 0.0, 1.0]))
-    return np.stack([_unit(np.cross(up, forward), _LEFT), up, forward], axis=1)
+    forward = _unit(cross(left, up), np.array([0.0, 0.0, 1.0]))
+    return np.stack([_unit(cross(up, forward), _LEFT), up, forward], axis=1)
 
 
 def _unit(vectors: FloatArray, otherwise: FloatArray) -> FloatArray:

@@ -19,6 +19,7 @@ from app.motion.frame.gait import exact_gait_cycles
 from app.motion.roles.joint_roles import SUN_ROLES
 from app.motion.skeleton.resampling import resample_to
 from app.numerics.arrays import FloatArray
+from app.numerics.quantiles import quantile
 
 CHANNELS = 13 * 3 + 4
 """Numbers of a moment, 43: positions (39, body lengths), height (1, body lengths), velocity to
@@ -71,7 +72,7 @@ def motion_shape(track: BodyTrack, cycles: list[tuple[float, float]] | None = No
 def moments_of(track: BodyTrack) -> FloatArray:
     """(n, 43) the CHANNELS of each frame of `track`."""
     lowest = track.positions[:, :, 1].min(axis=1)
-    floor = np.quantile(lowest, FLOOR_QUANTILE)
+    floor = quantile(lowest, FLOOR_QUANTILE)
     return np.column_stack(
         [
             track.local.reshape(track.frames, -1),

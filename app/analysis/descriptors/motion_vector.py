@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from app.analysis.descriptors.frame_features import FEATURES, POSITIONS
 from app.motion.frame.body_frame import ANALYSIS_RATE
-from app.numerics.arrays import FloatArray
+from app.numerics.arrays import FloatArray, IntArray
 
 DIMENSIONS = 128
 WIDE_DIMENSIONS = 512
@@ -149,8 +149,15 @@ def log_covariance(features: FloatArray) -> FloatArray:
     values, vectors = np.linalg.eigh(covariance + RIDGE * np.eye(count))
     # eigenvalues are >= RIDGE but for rounding
     logarithm = (vectors * np.log(np.maximum(values, RIDGE))) @ vectors.T
-    weights = np.where(np.eye(count, dtype=bool), 1.0, np.sqrt(2.0))
-    return np.asarray((weights * logarithm)[np.triu_indices(count)] * COVARIANCE_SCALE)
+    upper, weights = _upper_triangle(count)
+    return np.asarray((weights * logarithm.ravel()[upper]) * COVARIANCE_SCALE)
+
+
+@lru_cache(maxsize=4)
+def _upper_triangle(count: int) -> tuple[IntArray, FloatArray]:
+    """The flat indices of the upper triangle of a square matrix, and 1 or sqrt(2) for each."""
+    rows, columns = np.triu_indices(count)
+    return rows * count + columns, np.where(rows == columns, 1.0, np.sqrt(2.0))
 
 
 @lru_cache(maxsize=1)

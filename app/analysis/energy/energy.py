@@ -20,6 +20,8 @@ from app.analysis.energy.marker_noise import noise_of_speed, noise_power
 from app.motion.canonical.center_of_mass import ROLE_MASSES
 from app.motion.frame.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray
+from app.numerics.differences import central_differences, point_reflected
+from app.numerics.quantiles import quantile
 
 MIN_SMOOTHING = 1 / 30
 """Seconds (standard deviation): the weakest smoothing."""
@@ -124,7 +126,7 @@ def _rms(positions: FloatArray, rate: float, shares: FloatArray) -> EnergyCurve:
 
 def _smoothing(light_curve: EnergyCurve) -> float:
     """The seconds of smoothing that the noise requires; light_curve: with the weakest."""
-    high = float(np.quantile(light_curve.values, HIGH_QUANTILE))
+    high = float(quantile(light_curve.values, HIGH_QUANTILE))
     if not light_curve.noise > MAX_NOISE_SHARE * high:
         return MIN_SMOOTHING
     # The noise of a speed falls with the power -3/2 of the smoothing.
@@ -147,7 +149,7 @@ def velocities(positions: FloatArray, rate: float, smoothing: float) -> FloatArr
 
     rate: Hz. smoothing: seconds, the standard deviation of the Gaussian.
     """
-    return np.asarray(np.gradient(_smoothed(positions, smoothing * rate), axis=0)) * rate
+    return central_differences(_smoothed(positions, smoothing * rate)) * rate
 
 
 def _smoothed(positions: FloatArray, spread: float) -> FloatArray:
@@ -156,7 +158,5 @@ def _smoothed(positions: FloatArray, spread: float) -> FloatArray:
     Both ends are continued by point reflection, so that they keep their speed.
     """
     reach = int(np.ceil(4 * spread))
-    continued = np.pad(
-        positions, ((reach, reach), (0, 0), (0, 0)), mode="reflect", reflect_type="odd"
-    )
+    continued = point_reflected(positions, reach)
     return np.asarray(scipy.ndimage.gaussian_filter1d(continued, spread, axis=0)[reach:-reach])

@@ -7,12 +7,13 @@ quietest moments is noise. If it is white, the noise of a speed follows from it.
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 import scipy
 
 from app.numerics.arrays import FloatArray
+from app.numerics.quantiles import quantile
 
 NOISE_BAND = (8 / 15, 12 / 15)
 """As shares of half the frame rate: 8 to 12 Hz at 30 frames per second."""
@@ -55,9 +56,10 @@ def noise_power(positions: FloatArray, weights: FloatArray) -> float:
     power = np.square(noise).sum(axis=-1) @ weights
     smooth_power = scipy.ndimage.convolve1d(power, np.full(AVERAGED_FRAMES, 1 / AVERAGED_FRAMES))
     gain = float(np.square(band_pass).sum())
-    return float(np.quantile(smooth_power, QUIET_QUANTILE) / (gain * QUIET_TO_MEAN))
+    return float(quantile(smooth_power, QUIET_QUANTILE) / (gain * QUIET_TO_MEAN))
 
 
+@lru_cache(maxsize=256)
 def noise_of_speed(spread: float) -> float:
     """How much white noise of variance 1 adds to a squared speed, per squared frame.
 

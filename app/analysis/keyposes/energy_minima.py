@@ -15,6 +15,7 @@ import scipy
 
 from app.analysis.energy.energy import EnergyCurve
 from app.numerics.arrays import FloatArray
+from app.numerics.quantiles import median, quantile
 
 MIN_PROMINENCE = 0.25
 """Units by which a maximum must rise above the minima on both sides to separate them."""
@@ -81,11 +82,11 @@ def median_maximum(values: FloatArray) -> tuple[float, FloatArray]:
 
     Without a clear maximum, the largest value and no frames are returned.
     """
-    high = float(np.quantile(values, HIGH_QUANTILE))
+    high = float(quantile(values, HIGH_QUANTILE))
     maxima, _ = scipy.signal.find_peaks(values, prominence=max(MIN_PROMINENCE * high, 1e-12))
     if not len(maxima):
         return float(values.max()), maxima
-    unit = float(np.median(values[maxima]))
+    unit = float(median(values[maxima]))
     standing, _ = scipy.signal.find_peaks(values, prominence=MIN_PROMINENCE * unit)
     return unit, standing
 

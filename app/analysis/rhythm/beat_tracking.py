@@ -91,9 +91,9 @@ def track(strength: FloatArray, period: float, tightness: float, reach: float = 
     total = np.concatenate([np.full(furthest, -np.inf), strength])
     behind = sliding_window_view(total, len(gaps))
     for first in range(nearest, count, nearest):
-        reached = (behind[first : min(first + nearest, count)] + cost).max(axis=1)
+        reached = np.add(behind[first : first + nearest][: count - first], cost).max(axis=1)
         here = total[furthest + first : furthest + first + len(reached)]
-        here += np.maximum(reached, 0.0)
+        np.add(here, np.maximum(reached, 0.0, out=reached), out=here)
     last = max(0, count - round(period))
     beats = [last + int(total[furthest + last :].argmax())]
     while beats[-1] >= nearest:

@@ -18,6 +18,7 @@ from numpy.polynomial.legendre import legvander
 
 from app.analysis.rhythm.beat_tracking import MIN_BEATS, likely_periods, track
 from app.numerics.arrays import FloatArray
+from app.numerics.quantiles import median
 
 MIN_TEMPO, MAX_TEMPO = 40.0, 200.0
 """Beats per minute."""
@@ -137,6 +138,8 @@ def given_beats(times: FloatArray) -> Beats:
 def find_beats(energy: FloatArray, rate: float) -> Beats:
     """The beats of an energy curve (n,) at `rate` Hz; none if its stops have no common beat."""
     stops = find_stops(energy, rate)
+    if len(stops.times) < MIN_BEATS:
+        return no_beats()
     shortest, longest = 60.0 * STOP_RATE / MAX_TEMPO, 60.0 * STOP_RATE / MIN_TEMPO
     best, found = None, -np.inf
     for period in likely_periods(stops.curve, shortest, longest, MAX_PERIODS):
@@ -244,13 +247,16 @@ class _TempoTrack:
 
 def _track_tempo(stops: Stops, period: float) -> _TempoTrack | None:
     """The beats whose interval is about `period` frames of `stops.curve`; None if too few."""
+    if len(stops.times) < MIN_BEATS:
+        return None
     tracked = track(STOP_HEIGHT * stops.curve, period, TIGHTNESS, MAX_INTERVAL_RATIO) / STOP_RATE
-    if len(stops.times) < MIN_BEATS or len(tracked) < MIN_BEATS:
+    if len(tracked) < MIN_BEATS:
         return None
     beats = _smoothed(tracked, stops)
-    if not (np.diff(beats) > 0).all():
+    steps = np.diff(beats)
+    if not (steps > 0).all():
         return None
-    beat = float(np.median(np.diff(beats)))
+    beat = float(median(steps))
     off = (stops.times[:, None] - beats) / beat
     nearest = off[np.arange(len(off)), np.abs(off).argmin(axis=1)]
     weights, total = stops.weights, float(stops.weights.sum())
@@ -281,17 +287,18 @@ def _smoothed(beats: FloatArray, stops: Stops) -> FloatArray:
     the numbers of the beats, fitted by least squares.
     """
     nearest = np.abs(stops.times[:, None] - beats).argmin(axis=1)
-    beat = float(np.median(np.diff(beats)))
+    beat = float(median(np.diff(beats)))
     near = np.abs(stops.times - beats[nearest]) < 0.25 * beat
     degree = min(1 + len(beats) // BEATS_PER_BEND, MAX_BENDS)
     if int(near.sum()) < degree + 2:
         return beats
     numbers = 2.0 * np.arange(len(beats)) / (len(beats) - 1) - 1.0
-    basis, weights = legvander(numbers[nearest[near]], degree), stops.weights[near]
+    polynomials = legvander(numbers, degree)
+    basis, weights = polynomials[nearest[near]], stops.weights[near]
     stiff = np.diag([0.0, 0.0, *[STIFFNESS] * (degree - 1)])
     left = (basis * weights[:, None]).T @ basis + stiff
     right = (basis * weights[:, None]).T @ stops.times[near]
-    return np.asarray(legvander(numbers, degree) @ np.linalg.solve(left, right))
+    return np.asarray(polynomials @ np.linalg.solve(left, right))
 
 
 def continued(beats: FloatArray, duration: float) -> FloatArray:

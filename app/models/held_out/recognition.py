@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from typing import Any, NamedTuple
 
@@ -18,12 +18,15 @@ from app.models.recognition.copies import ClipCopies
 from app.models.recognition.flat_pca import fit_flat_pca, recognize_flat
 from app.models.recognition.multilinear import fit_multilinear, recognize_multilinear
 from app.models.recognition.perera import TensorRecognizer, recognize_by_tensor, uncalibrated
-from app.models.recognition.recognizer import Recognizer, fit_recognizer, recognize_many
+from app.models.recognition.recognizer import Recognizer, fit_recognizer, likeliest
 from app.models.recognition.views import full_samples
 from app.numerics.arrays import FloatArray, IntArray
 
 Labels = Sequence[str | None]
 
+MAX_JUDGED = 1000
+"""Of larger libraries, a random subset of this many clips is judged by the methods other than the
+default one, whose guesses are stored for every clip."""
 
 _CURVE = ("threshold", "false_acceptance", "false_rejection")
 
@@ -65,7 +68,7 @@ class HeldOut(NamedTuple):
     guesses: list[Guess]
 
 
-_Recognize = Callable[[Clips, FloatArray], list[Recognition]]
+_GuessAll = Callable[[Clips, FloatArray], list[Guess]]
 
 
 def held_out_recognition(
@@ -97,7 +100,7 @@ def held_out_recognition(
     guesses: list[Guess] = []
     with suppress(NotEnoughLabels):
         clips = Clips(np.asarray(full), persons, tasks, groups, copies)
-        guesses = _guesses(_default, clips, fold)
+        guesses = _guesses(_default, clips, fold, np.arange(len(fold)))
         figures["default"] = _shares(guesses, persons, tasks)
     methods = {
         "multilinear": _multilinear,
@@ -123,7 +126,7 @@ def signature_figures(
 
 
 def _figures(
-    methods: Mapping[str, _Recognize],
+    methods: Mapping[str, _GuessAll],
     samples: FloatArray,
     persons: Labels,
     tasks: Labels,
@@ -132,13 +135,16 @@ def _figures(
     seed: int,
 ) -> dict[str, dict[str, float]]:
     fold = grouped_folds(groups, folds, seed=seed)
+    judged = np.sort(np.random.RandomState(seed).permutation(len(fold))[:MAX_JUDGED])
+    who, what = ([labels[i] for i in judged] for labels in (persons, tasks))
     figures = {}
     for name, method in methods.items():
+        clips = Clips(np.asarray(samples), persons, tasks, groups)
         try:
-            guesses = _guesses(method, Clips(np.asarray(samples), persons, tasks, groups), fold)
+            guesses = _guesses(method, clips, fold, judged)
         except NotEnoughLabels:
             continue
-        figures[name] = _shares(guesses, persons, tasks)
+        figures[name] = _shares([guesses[i] for i in judged], who, what)
     return figures
 
 
@@ -174,15 +180,19 @@ def _too_few(name: str, count: int) -> str:
     return f"No {name} could be held out: the clips have {found}, and {MIN_LABELS} are needed."
 
 
-def _guesses(method: _Recognize, clips: Clips, fold: IntArray) -> list[Guess]:
-    """For each clip the best person and task, by a model of all other folds."""
+def _guesses(guess: _GuessAll, clips: Clips, fold: IntArray, judged: IntArray) -> list[Guess]:
+    """For each of the `judged` clips the best person and task, by a model of all other folds."""
     guesses: list[Guess] = [(None, None)] * len(fold)
-    for each in np.unique(fold):
-        train, probe = np.flatnonzero(fold != each), np.flatnonzero(fold == each)
-        recognitions = method(clips.part(train), clips.samples[probe])
-        for index, recognition in zip(probe, recognitions, strict=True):
-            guesses[index] = (_best(recognition.person), _best(recognition.task))
+    for each in np.unique(fold[judged]):
+        train, probe = np.flatnonzero(fold != each), judged[fold[judged] == each]
+        found = guess(clips.part(train), clips.samples[probe])
+        for index, best in zip(probe, found, strict=True):
+            guesses[index] = best
     return guesses
+
+
+def _of_recognitions(recognitions: Iterable[Recognition]) -> list[Guess]:
+    return [(_best(found.person), _best(found.task)) for found in recognitions]
 
 
 def _best(answer: Answer) -> str | None:
@@ -200,33 +210,35 @@ def _shares(guesses: list[Guess], persons: Labels, tasks: Labels) -> dict[str, f
     }
 
 
-def _default(clips: Clips, probes: FloatArray) -> list[Recognition]:
-    return recognize_many(fit_recognizer(*clips), probes)
+def _default(clips: Clips, probes: FloatArray) -> list[Guess]:
+    # Only the best candidate counts, so the costly calibration is left out.
+    return likeliest(fit_recognizer(*clips, is_calibrated=False), probes)
 
 
-def _multilinear(clips: Clips, probes: FloatArray) -> list[Recognition]:
+def _multilinear(clips: Clips, probes: FloatArray) -> list[Guess]:
     record = fit_multilinear(clips.samples, clips.persons, clips.tasks)
-    return [recognize_multilinear(record, probe) for probe in probes]
+    return _of_recognitions(recognize_multilinear(record, probe) for probe in probes)
 
 
-def _signatures(clips: Clips, probes: FloatArray) -> list[Recognition]:
+def _signatures(clips: Clips, probes: FloatArray) -> list[Guess]:
     record = fit_multilinear(clips.samples, clips.persons, clips.tasks, moments=SAMPLES)
-    return [recognize_multilinear(record, probe) for probe in probes]
+    return _of_recognitions(recognize_multilinear(record, probe) for probe in probes)
 
 
-def _perera(clips: Clips, probes: FloatArray) -> list[Recognition]:
+def _perera(clips: Clips, probes: FloatArray) -> list[Guess]:
     # Only the best candidate counts, so the costly calibration of unknown labels is left out.
-    return recognize_by_tensor(uncalibrated(clips.samples, clips.persons, clips.tasks), probes)
+    record = uncalibrated(clips.samples, clips.persons, clips.tasks)
+    return _of_recognitions(recognize_by_tensor(record, probes))
 
 
-def _flat_pca(clips: Clips, probes: FloatArray) -> list[Recognition]:
+def _flat_pca(clips: Clips, probes: FloatArray) -> list[Guess]:
     record = fit_flat_pca(clips.samples, clips.persons, clips.tasks)
-    return [recognize_flat(record, probe) for probe in probes]
+    return _of_recognitions(recognize_flat(record, probe) for probe in probes)
 
 
-def _prior(clips: Clips, probes: FloatArray) -> list[Recognition]:
+def _prior(clips: Clips, probes: FloatArray) -> list[Guess]:
     both = Recognition(_most_frequent(clips.persons), _most_frequent(clips.tasks))
-    return [both] * len(probes)
+    return _of_recognitions([both] * len(probes))
 
 
 def _most_frequent(labels: Labels) -> Answer:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -45,7 +46,7 @@ RADIUS_SLACK = 1.5
 """Factor on the radius: held-out takes are farther from their cells than the takes of the fit."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Multilinear:
     """A fitted multilinear model.
 
@@ -62,6 +63,11 @@ class Multilinear:
     svd: NModeSVD
     radius: float
     task_means: TaskMeans | None = None
+
+    @cached_property
+    def cells(self) -> FloatArray:
+        """(P, T, d) the coordinates of each person at each task. Every recognition reads them."""
+        return self.svd.reconstruct()
 
     def aligned(self, sample: FloatArray, task: str) -> FloatArray:
         """A sample (1250,) warped onto the mean of `task`, as the motions of the tensor are."""
@@ -196,7 +202,7 @@ def recognize_multilinear(
     that the library does not have is not used to recognize the other one. Scores are shares by
     nearness, not probabilities. A clip that is farther than the radius from every cell is unknown.
     """
-    distances = np.linalg.norm(record.svd.reconstruct() - record.axes.project(sample), axis=2)
+    distances = np.linalg.norm(record.cells - record.axes.project(sample), axis=2)
     person = given(known_person, record.persons) if known_person else None
     task = given(known_task, record.tasks) if known_task else None
     to_persons, to_tasks = distances.min(axis=1), distances.min(axis=0)
@@ -208,7 +214,7 @@ def recognize_multilinear(
         # the person is recognized without the timing, the task with it
         likely = int(to_tasks.argmin())
         point = record.axes.project(record.aligned(sample, record.tasks[likely]))
-        to_persons = np.linalg.norm(record.svd.reconstruct()[:, likely] - point, axis=1)
+        to_persons = np.linalg.norm(record.cells[:, likely] - point, axis=1)
     if known_person in record.persons:
         actions = record.svd.factors[1]
         to_tasks = np.linalg.norm(record.action(sample, known_person) - actions, axis=1)

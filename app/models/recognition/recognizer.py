@@ -20,7 +20,7 @@ from app.analysis.descriptors.motion_sample import SAMPLE_LENGTH
 from app.errors import NotEnoughLabels
 from app.models.cells import find_cells
 from app.models.recognition.answers import Answer, Recognition, answer, given
-from app.models.recognition.calibration import Calibration
+from app.models.recognition.calibration import Calibration, no_calibration
 from app.models.recognition.copies import ClipCopies, CopiedClips
 from app.models.recognition.held_out_evidence import Labeled, calibrations
 from app.models.recognition.reach import allowance, nearest_cells, reach_of, recorded_cells
@@ -42,6 +42,9 @@ RECOGNIZER_VERSION = 6
 MOSTLY_REPEATED = 0.5
 """The takes of a library count as repeated if at least this share of its clips has another clip of
 the same person at the same task."""
+
+AT_ONCE = 256
+"""Clips that are compared with all hypotheses at once. It bounds the memory."""
 
 _Arrays = dict[str, np.ndarray[Any, Any]]
 
@@ -116,14 +119,18 @@ def fit_recognizer(
     groups: Sequence[str] | None = None,
     copies: ClipCopies | None = None,
     sample_length: int = SAMPLE_LENGTH,
+    *,
+    is_calibrated: bool = True,
 ) -> Recognizer:
     """Fit on full samples with their labels (None: no label).
 
     samples: (clips, 1762); each is a motion sample of `sample_length` (1250), followed by the wide
     motion vector of the clip; groups: (clips,) clips of one recording share a value and are held
     out together; copies: (clips,) the disturbed copies of some clips. Without copies, a clip with
-    noise or another speed is often called unknown. Raises NotEnoughLabels with fewer than two
-    labeled clips.
+    noise or another speed is often called unknown. is_calibrated: False leaves out the calibration
+    on held-out clips, which takes most of the time; the candidates are then in the right order,
+    but scores and the decision on what is unknown have no meaning. Raises NotEnoughLabels with
+    fewer than two labeled clips.
     """
     use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if any(labels)]
     if len(use) < 2:
@@ -140,8 +147,12 @@ def fit_recognizer(
     clips = Labeled(points, persons, tasks, together, copied)
     hypotheses = clips.hypotheses(np.arange(len(use)))
     by_both = int(cells.takes[cells.takes > 1].sum()) < MOSTLY_REPEATED * len(use)
-    person, task = calibrations(clips, hypotheses, persons_by_both=by_both)
     views = View(sample, hypotheses[0]), View(wide, hypotheses[1])
+    if not is_calibrated:
+        allowed = np.zeros((2, len(hypotheses[1].kind)))
+        none = no_calibration()
+        return Recognizer(cells.persons, cells.tasks, *views, by_both, none, none, *allowed)
+    person, task = calibrations(clips, hypotheses, persons_by_both=by_both)
     recorded = recorded_cells(hypotheses[1])
     reach = reach_of(hypotheses, recorded, persons_by_both=by_both)
     allowed = np.zeros((2, len(hypotheses[1].kind)))
@@ -200,6 +211,30 @@ def recognize_many(
     of_factor = record.tasks, record.task_calibration, known_task
     what = _answers(logs.ranking, new_task, h.task, *of_factor)
     return [Recognition(person, task) for person, task in zip(who, what, strict=True)]
+
+
+def likeliest(record: Recognizer, samples: FloatArray) -> list[tuple[str | None, str | None]]:
+    """The best person and the best task for each of `samples` (n, 1762); None without candidates.
+
+    They are the first candidates of `recognize_many`, without scores and novelties. The calibration
+    does not change which candidate is the best, so an uncalibrated recognizer will do.
+    """
+    found: list[tuple[str | None, str | None]] = []
+    for first in range(0, len(samples), AT_ONCE):
+        rows = both_views(samples[first : first + AT_ONCE], len(record.sample.axes.center))
+        sample, wide = record.sample, record.wide
+        points = BothViews(sample.axes.project(rows.sample), wide.axes.project(rows.wide))
+        h = wide.hypotheses
+        ranking = LogDensities.ranking_under(sample.hypotheses, h, points)
+        who = _best(ranking, h.person, record.persons)
+        found += zip(who, _best(ranking, h.task, record.tasks), strict=True)
+    return found
+
+
+def _best(ranking: FloatArray, label: IntArray, names: tuple[str, ...]) -> Sequence[str | None]:
+    if not names:
+        return [None] * len(ranking)
+    return [names[best] for best in evidence(ranking, label, len(names)).argmax(axis=1)]
 
 
 def _answers(

@@ -32,16 +32,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
-import scipy
 
 from app.motion.canonical.center_of_mass import center_of_mass
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.skeleton.recording import Caution
+from app.motion.skeleton.smoothing import butterworth, there_and_back
 from app.numerics.arrays import FloatArray
+from app.numerics.differences import point_reflected
+from app.numerics.quantiles import median, quantile
 
 GRAVITY = 9.81
 """m/s2."""
@@ -178,7 +179,7 @@ def _free_fall(positions: FloatArray, center: FloatArray, rate: float) -> Iterat
 def _flights(positions: FloatArray) -> list[tuple[int, int]]:
     """The start and the end (exclusive) of each flight; positions: (frames, 13, 3) meters."""
     feet = positions[:, [_ROLE[JointRole.LEFT_FOOT], _ROLE[JointRole.RIGHT_FOOT]], 1]
-    clear = np.all(feet > np.percentile(feet, 5, axis=0) + MIN_CLEARANCE, axis=1)
+    clear = np.all(feet > quantile(feet, 0.05) + MIN_CLEARANCE, axis=1)
     edges = np.flatnonzero(np.diff(np.r_[0, clear.astype(np.int8), 0]))
     return [(int(a), int(b)) for a, b in edges.reshape(-1, 2) if b - a >= MIN_FLIGHT_FRAMES]
 
@@ -208,7 +209,7 @@ def _friction(acceleration: FloatArray) -> Iterator[_Finding]:
     if np.mean(loaded) < MIN_LOADED_SHARE:
         return
     sideways = np.hypot(acceleration[loaded, 0], acceleration[loaded, 2])
-    demand = float(np.percentile(sideways / load[loaded], FRICTION_QUANTILE))
+    demand = float(quantile(sideways / load[loaded], FRICTION_QUANTILE / 100))
     if demand > MAX_FRICTION:
         yield _Finding(
             (demand / MAX_FRICTION) ** 0.5,
@@ -218,14 +219,14 @@ def _friction(acceleration: FloatArray) -> Iterator[_Finding]:
 
 def _support(acceleration: FloatArray) -> Iterator[_Finding]:
     """acceleration: (frames, 3) that of the center of mass in g."""
-    fall = float(np.percentile(acceleration[:, 1], SUPPORT_QUANTILE))
+    fall = float(quantile(acceleration[:, 1], SUPPORT_QUANTILE / 100))
     if fall < MIN_SUPPORT:
         yield _Finding(abs(fall) ** 0.5, f"the body falls with {-fall:.1f} g")
 
 
 def _speed(velocity: FloatArray) -> Iterator[_Finding]:
     """velocity: (frames, 3) that of the center of mass in m/s."""
-    speed = float(np.percentile(np.linalg.norm(velocity, axis=1), SPEED_QUANTILE))
+    speed = float(quantile(np.linalg.norm(velocity, axis=1), SPEED_QUANTILE / 100))
     if speed > MAX_SPEED:
         yield _Finding(speed / MAX_SPEED, f"the body travels at {speed:.0f} m/s")
 
@@ -264,7 +265,7 @@ def _leg_length(positions: FloatArray) -> float:
         for role in (JointRole.HIPS, JointRole.LEFT_KNEE, JointRole.LEFT_FOOT)
     )
     thigh, shank = (np.linalg.norm(bone, axis=1) for bone in (hips - knee, knee - foot))
-    return float(np.median(thigh + shank))
+    return float(median(thigh + shank))
 
 
 def _side_lines(positions: FloatArray) -> FloatArray:
@@ -293,30 +294,10 @@ def _fore_aft(across: FloatArray, feet: FloatArray) -> FloatArray:
 
 
 def _low_pass(samples: FloatArray, rate: float, cutoff: float) -> FloatArray:
-    """`samples` (frames, ...) without frequencies above `cutoff` Hz, and without a delay.
-
-    The same as scipy's `sosfiltfilt`, which computes the filter's state anew in each call. For a
-    short clip, this takes longer than the filter.
-    """
+    """`samples` (frames, ...) without frequencies above `cutoff` Hz, and without a delay."""
     # A filter near half of the rate is not stable, and there is little to remove.
     if cutoff >= 0.45 * rate:
         return samples
     padding = min(len(samples) - 1, round(rate))
-    sections, state = _filter(rate, cutoff)
-    state = state.reshape(*state.shape, *[1] * (samples.ndim - 1))
-    before, after = samples[padding:0:-1], samples[-2 : -padding - 2 : -1]
-    padded = np.concatenate([2 * samples[:1] - before, samples, 2 * samples[-1:] - after])
-    for _way in ("forward", "backward"):
-        padded, _state = scipy.signal.sosfilt(sections, padded, axis=0, zi=state * padded[0])
-        padded = padded[::-1]
-    return np.asarray(padded[padding : padding + len(samples)])
-
-
-@lru_cache(maxsize=64)
-def _filter(rate: float, cutoff: float) -> tuple[FloatArray, FloatArray]:
-    """The sections of the filter, and its state for a constant signal of 1.
-
-    They are cached, because their design takes longer than their use on a short clip.
-    """
-    sections = np.asarray(scipy.signal.butter(2, cutoff, fs=rate, output="sos"))
-    return sections, np.asarray(scipy.signal.sosfilt_zi(sections))
+    filtered = there_and_back(butterworth(rate, cutoff), point_reflected(samples, padding))
+    return filtered[padding : padding + len(samples)]

@@ -8,7 +8,7 @@ torso + neck to head + shin.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,6 +20,8 @@ from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.motion.skeleton.resampling import resample
 from app.motion.skeleton.smoothing import cut_off_of, low_passed
 from app.numerics.arrays import BoolArray, FloatArray
+from app.numerics.differences import central_differences
+from app.numerics.quantiles import median
 
 ANALYSIS_RATE = 30.0
 """Hz: the rate at which all motions are analyzed."""
@@ -91,12 +93,12 @@ class BodyTrack:
 
     def velocity(self) -> FloatArray:
         """(n, 3) the velocity of the hips in the body frame, body lengths per second."""
-        steps = np.gradient(self.origin, axis=0) * (self.rate / self.body_length)
+        steps = central_differences(self.origin) * (self.rate / self.body_length)
         return turned(steps[:, None], -self.heading)[:, 0]
 
     def yaw_rate(self) -> FloatArray:
         """(n,) the rate of turning about Y, radians per second, positive to the left."""
-        return np.asarray(np.gradient(self.heading) * self.rate)
+        return central_differences(self.heading) * self.rate
 
 
 def body_track(motion: Motion) -> BodyTrack:
@@ -106,7 +108,7 @@ def body_track(motion: Motion) -> BodyTrack:
     motion (app.motion.frame.posed_start). Raises TooShort for fewer than MIN_FRAMES frames at that
     rate, and NotHuman for a body without size.
     """
-    return _track(with_held_start(motion), is_smooth=False)
+    return _of_readings(_read(with_held_start(motion)))
 
 
 def smooth_track(motion: Motion) -> BodyTrack:
@@ -115,10 +117,29 @@ def smooth_track(motion: Motion) -> BodyTrack:
     Descriptors are computed from it. Energies are not: they have a model of the noise that needs
     to see it. The filter runs at ANALYSIS_RATE, so that a motion is the same at any frame rate.
     """
-    return _track(with_held_start(motion), is_smooth=True)
+    return _of_readings(_smoothed(_read(with_held_start(motion))))
 
 
-def _track(motion: Motion, *, is_smooth: bool) -> BodyTrack:
+def both_tracks(motion: Motion) -> tuple[BodyTrack, BodyTrack]:
+    """`body_track` and `smooth_track` of a motion, which share most of their work."""
+    readings = _read(with_held_start(motion))
+    return _of_readings(readings), _of_readings(_smoothed(readings))
+
+
+@dataclass(frozen=True, slots=True)
+class _Readings:
+    """What a track is made of, at ANALYSIS_RATE, in meters.
+
+    positions: (n, 13, 3). left: (n, 3) the line from right to left, None if there is none.
+    """
+
+    positions: FloatArray
+    left: FloatArray | None
+    body_length: float
+
+
+def _read(motion: Motion) -> _Readings:
+    """Raises TooShort and NotHuman."""
     positions = _at_analysis_rate(motion.role_positions(), motion.frame_rate)
     left = _left_axis(motion)
     if len(positions) < MIN_FRAMES:
@@ -128,12 +149,22 @@ def _track(motion: Motion, *, is_smooth: bool) -> BodyTrack:
             f"The motion has {motion.frames} frames; {seconds:.2f} s are needed.",
             places=[Place("frames", message)],
         )
-    if is_smooth:
-        cut_off = cut_off_of(positions, ANALYSIS_RATE)
-        positions = low_passed(positions, ANALYSIS_RATE, cut_off)
-        left = None if left is None else low_passed(left, ANALYSIS_RATE, cut_off)
-    length = body_length(motion)
-    heading = _heading(left, len(positions))
+    return _Readings(positions, left, body_length(motion))
+
+
+def _smoothed(readings: _Readings) -> _Readings:
+    cut_off = cut_off_of(readings.positions, ANALYSIS_RATE)
+    left = readings.left
+    return replace(
+        readings,
+        positions=low_passed(readings.positions, ANALYSIS_RATE, cut_off),
+        left=None if left is None else low_passed(left, ANALYSIS_RATE, cut_off),
+    )
+
+
+def _of_readings(readings: _Readings) -> BodyTrack:
+    positions, length = readings.positions, readings.body_length
+    heading = _heading(readings.left, len(positions))
     origin = positions[:, SUN_ROLES.index(JointRole.HIPS)]
     local = turned(positions - origin[:, None], -heading) / length
     return BodyTrack(positions, local, origin, heading, length)
@@ -159,8 +190,12 @@ def body_length(motion: Motion) -> float:
 def turned(points: FloatArray, angles: FloatArray) -> FloatArray:
     """(n, joints, 3) `points` turned about Y by `angles` (n,), in radians, from Z toward X."""
     cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
-    x, y, z = np.moveaxis(points, -1, 0)
-    return np.stack([cos * x + sin * z, y, cos * z - sin * x], axis=-1)
+    x, z = points[..., 0], points[..., 2]
+    result = np.empty_like(points)
+    result[..., 0] = cos * x + sin * z
+    result[..., 1] = points[..., 1]
+    result[..., 2] = cos * z - sin * x
+    return result
 
 
 def _at_analysis_rate(positions: FloatArray, rate: float) -> FloatArray:
@@ -173,7 +208,7 @@ def _distances(motion: Motion, pairs: Sequence[tuple[JointRole, JointRole]]) -> 
     found = [pair for pair in pairs if all(role in roles for role in pair)]
     ones, others = ([roles[pair[end]] for pair in found] for end in (0, 1))
     lines = motion.positions[:, ones] - motion.positions[:, others]
-    medians = np.median(np.linalg.norm(lines.astype(np.float64), axis=-1), axis=0)
+    medians = median(np.linalg.norm(lines.astype(np.float64), axis=-1))
     by_pair = dict(zip(found, medians.tolist(), strict=True))
     return [by_pair.get(pair) for pair in pairs]
 

@@ -18,6 +18,7 @@ import scipy
 
 from app.deadline import check
 from app.numerics.arrays import FloatArray
+from app.numerics.differences import central_differences, point_reflected
 
 LOW_PASS_REACH = 4.0
 """Half of the length of the low-pass filter, in periods of the lower rate."""
@@ -148,12 +149,14 @@ def _sinc(ratio: float) -> FloatArray:
 
 def _continued(samples: FloatArray, reach: int) -> FloatArray:
     """(reach + frames + reach, ...) the samples, continued by point reflection at both ends."""
-    width = [(reach, reach)] + [(0, 0)] * (samples.ndim - 1)
-    return np.pad(samples, width, mode="reflect", reflect_type="odd")
+    return point_reflected(samples, reach)
 
 
 def _tangents(samples: FloatArray) -> FloatArray:
     """(frames, ...) the slope per frame at each sample: central inside, parabolic at the ends."""
     if len(samples) == 2:
         return np.repeat(samples[1:] - samples[:1], 2, axis=0)
-    return np.asarray(np.gradient(samples, axis=0, edge_order=2))
+    slopes = central_differences(samples)
+    slopes[0] = -1.5 * samples[0] + 2.0 * samples[1] - 0.5 * samples[2]
+    slopes[-1] = 0.5 * samples[-3] - 2.0 * samples[-2] + 1.5 * samples[-1]
+    return slopes

@@ -72,11 +72,14 @@ def conjugate(quaternions: FloatArray) -> FloatArray:
 def rotate(quaternions: FloatArray, vectors: FloatArray) -> FloatArray:
     """Vectors (..., 3) turned by unit quaternions (..., 4): v + 2 u x (u x v + w v)."""
     w, u = quaternions[..., :1], quaternions[..., 1:]
-    return vectors + 2.0 * _cross(u, _cross(u, vectors) + w * vectors)
+    return vectors + 2.0 * cross(u, cross(u, vectors) + w * vectors)
 
 
-def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    # np.cross is slower, because it spends most of its time on moving axes.
+def cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    """The cross product (..., 3) of two arrays of vectors (..., 3).
+
+    numpy's own is slower, because it spends most of its time on moving axes.
+    """
     x, y, z = a[..., 0], a[..., 1], a[..., 2]
     u, v, w = b[..., 0], b[..., 1], b[..., 2]
     product = np.empty(np.broadcast_shapes(a.shape, b.shape))

@@ -19,10 +19,14 @@ unit; rates in Hz.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import lru_cache
+
 import numpy as np
 import scipy
 
 from app.numerics.arrays import FloatArray
+from app.numerics.differences import point_reflected
 
 CUT_OFFS = (4.0, 10.0)
 """Hz: the lowest and the highest cut-off frequency. Human movement needs the lowest."""
@@ -56,11 +60,40 @@ def low_passed(samples: FloatArray, rate: float, cut_off: float) -> FloatArray:
     of_one_pass = cut_off * _PER_PASS
     if of_one_pass >= rate / 2 or len(samples) < 2:
         return samples
-    sections = scipy.signal.butter(2, of_one_pass, fs=rate, output="sos")
     width = round(PADDING * rate)
-    around = [(width, width)] + [(0, 0)] * (samples.ndim - 1)
-    padded = np.pad(samples, around, mode="reflect", reflect_type="odd")
-    return np.asarray(scipy.signal.sosfiltfilt(sections, padded, axis=0, padlen=0)[width:-width])
+    padded = point_reflected(samples, width)
+    return there_and_back(butterworth(rate, of_one_pass), padded)[width:-width]
+
+
+@dataclass(frozen=True, slots=True)
+class Filter:
+    """A filter of the second order. sections: (1, 6) as in scipy. state: (1, 2) the state in which
+    a constant signal of 1 leaves it."""
+
+    sections: FloatArray
+    state: FloatArray
+
+
+@lru_cache(maxsize=64)
+def butterworth(rate: float, cut_off: float) -> Filter:
+    """The low-pass filter of one pass; rate, cut_off: Hz. Its power at the cut-off is a half.
+
+    It is cached, because its design takes longer than its use on a short clip.
+    """
+    sections = np.asarray(scipy.signal.butter(2, cut_off, fs=rate, output="sos"))
+    return Filter(sections, np.asarray(scipy.signal.sosfilt_zi(sections)))
+
+
+def there_and_back(one: Filter, samples: FloatArray) -> FloatArray:
+    """`samples` (frames, ...) filtered forward and then backward, so that there is no delay.
+
+    The same as scipy's `sosfiltfilt` without padding, which computes the state in each call.
+    """
+    state = one.state.reshape(*one.state.shape, *[1] * (samples.ndim - 1))
+    for _way in ("there", "back"):
+        samples, _ = scipy.signal.sosfilt(one.sections, samples, axis=0, zi=state * samples[0])
+        samples = samples[::-1]
+    return samples
 
 
 def cut_off_of(positions: FloatArray, rate: float) -> float:

@@ -67,7 +67,8 @@ def symmetric_rank1(
     size = float(np.linalg.norm(volume))
     if size == 0.0:
         return Rank1(0.0, rho, epsilon, np.zeros(1), np.zeros(1), converged=True)
-    weights = [_weight(volume, rho, epsilon)]
+    times = _along_time(volume, rho)
+    weights = [float(times @ epsilon)]
     change, converged = np.inf, False
     while not converged and len(weights) <= max_iterations:
         check()
@@ -75,22 +76,20 @@ def symmetric_rank1(
         if change <= min_change:
             # Lambda is constant but rho is not: rho alternates between two vectors. Power
             # iteration does so if two eigenvalues differ only in their sign.
-            rho = _unit(rho + _step(volume, rho, epsilon)[0], otherwise=rho)
-        rho, epsilon = _step(volume, rho, epsilon)
-        weights.append(_weight(volume, rho, epsilon))
+            rho = _unit(rho + _stepped(volume, rho, epsilon), otherwise=rho)
+            times = _along_time(volume, rho)
+        # both updates of algorithm 1, each from the old vectors, as in the paper
+        rho, epsilon = _stepped(volume, rho, epsilon), _unit(times, otherwise=epsilon)
+        times = _along_time(volume, rho)
+        weights.append(float(times @ epsilon))
         change = _change(weights)
         converged = max(change, float(np.sum((rho - before) ** 2))) <= min_change
     return _result(volume, rho, np.array(weights), converged)
 
 
-def _step(
-    volume: FloatArray, rho: FloatArray, epsilon: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Both updates of algorithm 1, each from the old vectors, as in the paper."""
-    return (
-        _unit((volume @ epsilon) @ rho, otherwise=rho),
-        _unit(_along_time(volume, rho), otherwise=epsilon),
-    )
+def _stepped(volume: FloatArray, rho: FloatArray, epsilon: FloatArray) -> FloatArray:
+    """(I,) the next rho."""
+    return _unit((volume @ epsilon) @ rho, otherwise=rho)
 
 
 def _result(volume: FloatArray, rho: FloatArray, weights: FloatArray, converged: bool) -> Rank1:
@@ -112,10 +111,6 @@ def _along_time(volume: FloatArray, rho: FloatArray) -> FloatArray:
     return np.outer(rho, rho).ravel() @ volume.reshape(rows * columns, frames)
 
 
-def _weight(volume: FloatArray, rho: FloatArray, epsilon: FloatArray) -> float:
-    return float(_along_time(volume, rho) @ epsilon)
-
-
 def _change(weights: Sequence[float] | FloatArray) -> float:
     """The relative change of the last weight to the one before it; 0 if the last weight is 0."""
     before, now = weights[-2:]
@@ -135,5 +130,5 @@ def _constant(count: int) -> FloatArray:
 
 
 def _unit(vector: FloatArray, otherwise: FloatArray) -> FloatArray:
-    length = np.linalg.norm(vector)
+    length = float(np.sqrt(vector @ vector))
     return vector / length if length > 0 else otherwise

@@ -20,6 +20,7 @@ from app.errors import (
     TooLarge,
 )
 from app.kinedex_error import MAX_MESSAGE, KinedexError, shortened
+from app.models.keyposes.thresholds import Thresholds
 from app.motion.motion import Motion
 from app.motion.skeleton.recording import Caution
 from app.services.children.child import ChildDied
@@ -41,8 +42,13 @@ RETRY_DELAY_S = 5.0
 """How long to wait before a temporary failure is tried again."""
 
 
-def analysis_request(lib: Library, clip: ClipRecord) -> AnalysisRequest:
-    """The analysis of a stored clip. Raises StoredFileMissing if one of its files is gone."""
+def analysis_request(
+    lib: Library, clip: ClipRecord, thresholds: Thresholds | None = None
+) -> AnalysisRequest:
+    """The analysis of a stored clip. Raises StoredFileMissing if one of its files is gone.
+
+    thresholds: of its keyposes, by default those of the library, for which the store is asked.
+    """
     skeleton, audio, hints = clip.skeleton_sha256, clip.audio_sha256, clip.hints
     return AnalysisRequest(
         path=_place(lib, clip.sha256, "motion file"),
@@ -52,7 +58,7 @@ def analysis_request(lib: Library, clip: ClipRecord) -> AnalysisRequest:
         metres_per_unit=hints.metres_per_unit,
         up_axis=hints.up_axis,
         roles=hints.roles,
-        thresholds=astuple(library_thresholds(lib)),
+        thresholds=astuple(thresholds or library_thresholds(lib)),
         audio_path=None if audio is None else _place(lib, audio, "recording"),
         beats=hints.beats,
         tempo=hints.tempo,

@@ -7,7 +7,13 @@ import pytest
 
 from app.errors import NotEnoughLabels
 from app.models.recognition.answers import Recognition
-from app.models.recognition.recognizer import Recognizer, fit_recognizer, recognize, recognize_many
+from app.models.recognition.recognizer import (
+    Recognizer,
+    fit_recognizer,
+    likeliest,
+    recognize,
+    recognize_many,
+)
 from tests.models.factor_clips import WIDTH, FactorClips, factor_clips
 
 
@@ -225,3 +231,15 @@ def test_small_libraries_and_motionless_clips_give_finite_answers(labels: list[s
         found = recognize(record, probe)
         assert np.isfinite(found.person.score)
         assert np.isfinite(found.task.score)
+
+
+def test_the_likeliest_labels_are_the_first_candidates_and_need_no_calibration(
+    clips: FactorClips, record: Recognizer
+) -> None:
+    quick = fit_recognizer(*clips.where(clips.takes > 0), is_calibrated=False)
+    asked = clips.samples + np.random.default_rng(0).normal(scale=0.3, size=clips.samples.shape)
+    best = [
+        (found.person.candidates[0].label, found.task.candidates[0].label)
+        for found in recognize_many(record, asked)
+    ]
+    assert likeliest(quick, asked) == likeliest(record, asked) == best

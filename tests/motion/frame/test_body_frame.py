@@ -10,7 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.errors import NotHuman, TooShort
-from app.motion.frame.body_frame import ANALYSIS_RATE, body_length, body_track
+from app.motion.frame.body_frame import (
+    ANALYSIS_RATE,
+    body_length,
+    body_track,
+    both_tracks,
+    smooth_track,
+)
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from tests.bodies import motion_of, standing, turned_about_y, walking, waving
 
@@ -107,3 +113,12 @@ def test_a_part_has_the_body_frame_of_the_whole() -> None:
     assert part.duration == pytest.approx(30 / ANALYSIS_RATE)
     assert part.body_length == track.body_length
     np.testing.assert_array_equal(part.local, track.local[30:60])
+
+
+def test_both_tracks_are_the_two_that_are_made_alone() -> None:
+    motion = motion_of(walking())
+    raw, smooth = both_tracks(motion)
+    for one, alone in ((raw, body_track(motion)), (smooth, smooth_track(motion))):
+        np.testing.assert_array_equal(one.positions, alone.positions)
+        np.testing.assert_array_equal(one.local, alone.local)
+        np.testing.assert_array_equal(one.heading, alone.heading)
