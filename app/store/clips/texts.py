@@ -39,9 +39,7 @@ class ClipTexts:
 
 
 _COLUMNS = tuple(field.name for field in fields(ClipTexts) if field.name in t.clips.c)
-_TEXTS = select(*(t.clips.c[name] for name in _COLUMNS)).where(
-    is_one_of(t.clips.c.id, "ids")
-)
+_TEXTS = select(*(t.clips.c[name] for name in _COLUMNS)).where(is_one_of(t.clips.c.id, "ids"))
 _REMOVE_WORD = delete(t.clip_words).where(
     t.clip_words.c.clip_id == bindparam("the_id"), t.clip_words.c.word == bindparam("the_word")
 )
