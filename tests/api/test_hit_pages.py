@@ -51,7 +51,7 @@ FULL: dict[str, Any] = {
     "error": {"code": "unreadable", "detail": "Line 3."},
     "reanalysis": Reanalysis.FAILED,
 }
-EMPTY = FULL | {name: None for name in ("path", "duration", "frame_rate", "error", "reanalysis")}
+EMPTY = FULL | dict.fromkeys(("path", "duration", "frame_rate", "error", "reanalysis"))
 
 
 def _hits(parts: tuple[PartScore, ...] = (), time: float | None = None) -> Hits:

@@ -26,7 +26,8 @@ class _Texts(FunctionElement[str]):
 
 @compiles(_Texts)
 def _for_sqlite(element: _Texts, compiler: SQLCompiler, **options: Any) -> str:
-    return f"(SELECT value FROM json_each({compiler.process(element.clauses, **options)}))"
+    array = compiler.process(element.clauses, **options)
+    return f"(SELECT value FROM json_each({array}))"  # noqa: S608 - the name of a parameter
 
 
 @compiles(_Texts, "postgresql")
