@@ -142,9 +142,10 @@ def create_app(settings: Settings) -> FastAPI:
     app.state.library = None
     app.state.limits = None
     app.state.sessions = None
+    app.state.loading = None
     app.state.stopping = False
     app.state.start_failure = None
-    app.state.gates = Gates.of(settings.request_timeout_s)
+    app.state.gates = Gates.of(settings.request_timeout_s, settings.processes)
     install_handlers(app)
     install_validators(app)
     for module in ROUTES:
@@ -178,7 +179,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     except KinedexError as failure:
         app.state.start_failure = failure
         raise
-    loading = Loading(library)
+    app.state.loading = loading = Loading(library)
     loading.start()
     library.health.start()
     app.state.limits = limits = RateLimits(library)

@@ -12,7 +12,7 @@ from collections.abc import Callable, Collection, Mapping
 from functools import lru_cache
 from typing import Any
 
-from sqlalchemy import Select, Text, cast, select
+from sqlalchemy import ColumnElement, Select, Text, cast, select
 
 from app.store.clips import clip_captions, clip_metadata, visibility
 from app.store.clips.measures import MEASURES
@@ -120,13 +120,13 @@ def read(tx: Tx, clip_ids: Collection[str], names: Collection[str]) -> dict[str,
 @lru_cache(64)
 def _query(names: frozenset[str]) -> tuple[tuple[str, ...], Select[Any]]:
     """The names of the columns to read, and the query. It is built once for some fields."""
-    columns = [clips.c[name] for name in sorted(names & PLAIN)]
+    columns: list[ColumnElement[Any]] = [clips.c[name] for name in sorted(names & PLAIN)]
     # Text and no JSON type, which would parse each value.
     columns += [cast(clips.c[name], Text).label(name) for name in _PARSERS if name in names]
     if not names.isdisjoint(AUDIO):
         columns += [clips.c[name] for name in _AUDIO_COLUMNS]
     query = select(*columns).where(is_one_of(clips.c.id, "ids"))
-    return tuple(column.name for column in columns), query
+    return tuple(query.selected_columns.keys()), query
 
 
 def _add_audio(values: dict[str, Any]) -> None:
