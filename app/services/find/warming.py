@@ -22,6 +22,7 @@ from app.services.find.queries import MotionQuery, WordQuery
 from app.services.find.query_source import QuerySource
 from app.services.library.analysis_pool import AnalysisRequest
 from app.services.library.library import Library
+from app.services.library.ready_clips import ready_clip
 from app.store import models
 
 _log = logging.getLogger(__name__)
@@ -29,6 +30,8 @@ _log = logging.getLogger(__name__)
 MAX_CLIPS = 20_000
 """Windows are loaded before somebody asks for them only in a library of at most this many clips:
 those of a clip of 10 s take 20 kB of memory."""
+MAX_FILE_BYTES = 2**20
+"""The largest file that is read for the first time: others take too long."""
 WORD_MODES = ("default", "cca")
 _UNREADABLE = b"\0"
 """The content of a file that no format has: to refuse it starts the process that reads files."""
@@ -86,8 +89,10 @@ class Warmth:
         if not len(alive):
             return
         # The shortest clip: to find it costs nothing, and to compare it costs least.
-        clip = QuerySource(clip_id=str(labels.ids[alive[labels.durations[alive].argmin()]]))
+        clip_id = str(labels.ids[alive[labels.durations[alive].argmin()]])
+        clip = QuerySource(clip_id=clip_id)
         yield partial(lib.pool.read, AnalysisRequest(content=_UNREADABLE))
+        yield partial(self._search_file, clip_id)
         yield partial(find.find_motion, lib, MotionQuery(clip))
         yield from self._of_models()
         yield partial(find_pose, lib, PoseQuery(clip, time=0.0))
@@ -99,6 +104,12 @@ class Warmth:
         for mode in WORD_MODES:
             yield partial(self._search_words, mode)
         yield partial(self._lib.models.recognizer, self._lib.store)
+
+    def _search_file(self, clip_id: str) -> None:
+        clip = ready_clip(self._lib, clip_id)
+        if clip.file_size <= MAX_FILE_BYTES:
+            with self._lib.store.files.open(clip.sha256) as content:
+                find.find_motion(self._lib, MotionQuery(QuerySource(content=content)))
 
     def _search_words(self, mode: str) -> None:
         words = self._lib.models.words(self._lib.store).model.vocabulary.words
