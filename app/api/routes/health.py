@@ -35,11 +35,11 @@ async def readyz(request: Request, lib: Lib) -> Ready:
     every problem. Stored files that are missing or damaged are counted in `warnings`, because the
     answer stays 200: only downloads and new analyses need these files.
     """
-    loading: Loading = request.app.state.loading
+    loading: Loading | None = request.app.state.loading
     return await _threads.run(lambda: _look(lib, loading))
 
 
-def _look(lib: Library, loading: Loading) -> Ready:
+def _look(lib: Library, loading: Loading | None) -> Ready:
     troubles = lib.health.troubles()
     if troubles:
         raise Unhealthy(places=troubles)
@@ -48,7 +48,7 @@ def _look(lib: Library, loading: Loading) -> Ready:
     return Ready(
         library_version=lib.index.version,
         clips=len(lib.index),
-        is_warm=loading.is_warm,
+        is_warm=loading is not None and loading.is_warm,
         warnings=_warnings(lib.health.files),
     )
 

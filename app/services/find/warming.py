@@ -99,6 +99,8 @@ class Warmth:
         yield partial(find.find_motion, lib, MotionQuery(clip, scope="segments"))
         if len(alive) <= MAX_CLIPS:
             yield partial(find.find_motion, lib, MotionQuery(clip, scope="windows"))
+            for index in lib.windows.values():  # a search reads only those as long as its query
+                yield partial(index.catch_up, lib.store)
 
     def _of_models(self) -> Iterator[Callable[[], object]]:
         for mode in WORD_MODES:
