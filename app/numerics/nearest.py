@@ -34,8 +34,8 @@ GATHER_RATIO = 16
 multiplied. Else all are multiplied."""
 
 MEASURED_AT_ONCE = 64
-"""Vectors whose exact distances are computed at a time. Their float64 copies stay in the cache of a
-core: for 1,000 vectors of 128 numbers, that takes half the time."""
+"""Vectors whose exact distances are computed at a time: their float64 copies stay in the cache of a
+core."""
 
 _ROUNDING = 10.0**-DECIMALS
 _MAX_SPARE_ROWS = 4096

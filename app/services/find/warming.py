@@ -28,8 +28,8 @@ from app.store import models
 _log = logging.getLogger(__name__)
 
 MAX_CLIPS = 20_000
-"""Windows are loaded before somebody asks for them only in a library of at most this many clips:
-those of a clip of 10 s take 20 kB of memory."""
+"""Windows are loaded before somebody asks for them only in a library of at most this many clips,
+because they need more memory than all other indexes."""
 MAX_FILE_BYTES = 2**20
 """The largest file that is read for the first time: others take too long."""
 WORD_MODES = ("default", "cca")

@@ -1,8 +1,8 @@
 """Conditions on many texts, as one parameter.
 
 SQLAlchemy's expanding parameters write the statement again for each execution, with one parameter
-a text: for 1,000 ids that takes 8 ms, four times as long as SQLite takes to find their rows. Here
-the texts are one JSON array, which the database takes apart.
+a text: for 1,000 ids that takes longer than SQLite takes to find their rows. Here the texts are one
+JSON array, which the database takes apart.
 """
 
 from __future__ import annotations
