@@ -24,7 +24,6 @@ from app.api.guard.idempotency import Idempotency
 from app.api.guard.limits import BodyLimit
 from app.api.guard.methods import KnownMethods
 from app.api.guard.rates import RateLimits
-from app.api.guard.sessions import Sessions
 from app.api.guard.slow_bodies import SlowBodies
 from app.api.loading import Loading
 from app.api.metrics import install_metrics
@@ -71,6 +70,8 @@ from app.api.web_pages import install_pages
 from app.config import Settings
 from app.kinedex_error import KinedexError
 from app.services.library.library import Library
+from app.store.sessions import Sessions
+from app.store.shared_rows import open_engine
 
 _SUMMARY = "Search human motion by example and by words, and ask who does what."
 _DESCRIPTION = """\
@@ -150,10 +151,11 @@ def create_app(settings: Settings) -> FastAPI:
     app.state.settings = settings
     app.state.library = None
     app.state.limits = None
-    app.state.sessions = Sessions()
+    app.state.sessions = None
+    app.state.loading = None
     app.state.stopping = False
     app.state.start_failure = None
-    app.state.gates = Gates.of(settings.request_timeout_s)
+    app.state.gates = Gates.of(settings.request_timeout_s, settings.processes)
     install_handlers(app)
     install_validators(app)
     for module in ROUTES:
@@ -187,10 +189,12 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     except KinedexError as failure:
         app.state.start_failure = failure
         raise
-    loading = Loading(library)
+    app.state.loading = loading = Loading(library)
     loading.start()
     library.health.start()
     app.state.limits = limits = RateLimits(library)
+    rows = open_engine(library.store.database.engine, library.settings.data_dir)
+    app.state.sessions = sessions = Sessions(rows)
     app.state.library = library
     try:
         yield
@@ -199,4 +203,5 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         await run_in_threadpool(loading.stop)
         await run_in_threadpool(library.health.stop)
         limits.close()
+        sessions.close()
         await run_in_threadpool(library.close)

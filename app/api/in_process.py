@@ -93,6 +93,7 @@ def _application(library: Library, module: str) -> FastAPI:
     app.state.library = library
     app.state.settings = library.settings
     app.state.stopping = False
+    app.state.loading = None
     app.state.gates = Gates.of(DAY_S)
     install_handlers(app)
     with without_collector():

@@ -1,9 +1,16 @@
-"""The API process: uvicorn runs the application. `python -m app.api.server` starts only this."""
+"""The API process: uvicorn runs the application. `python -m app.api.server` starts only this.
+
+With `--fd N` it listens on an inherited socket, which it shares with other processes of the API
+(`app.worker.api_processes`). It takes one connection at a time, so that a process that works leaves
+the next one to a process that does not.
+"""
 
 from __future__ import annotations
 
 import logging
+import socket
 import sys
+from collections.abc import Sequence
 from functools import partial
 from types import FrameType
 from typing import cast
@@ -23,6 +30,7 @@ log = logging.getLogger(__name__)
 
 GRACE_SECONDS = 5
 """How long running requests may go on after a stop. Then they are cut off."""
+FD = "--fd"
 BACKLOG = 256
 """Connections that the kernel queues until uvicorn accepts them."""
 
@@ -39,9 +47,19 @@ class _Server(uvicorn.Server):
         self._app.state.stopping = True
         super().handle_exit(sig, frame)
 
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Listen."""
+        await super().startup(sockets)
+        for one in sockets or ():
+            # asyncio takes as many connections at once as it lets the kernel queue.
+            one.listen(BACKLOG)
 
-def run(settings: Settings) -> None:
-    """Serve until SIGINT or SIGTERM. Raises the KinedexError of a library that cannot be opened."""
+
+def run(settings: Settings, shared: socket.socket | None = None) -> None:
+    """Serve until SIGINT or SIGTERM. Raises the KinedexError of a library that cannot be opened.
+
+    shared: a socket on which other processes listen too; None to listen alone.
+    """
     set_level(settings.log_level.upper())
     app = create_app(settings)
     limit = room_for_connections(settings.max_connections, BACKLOG)
@@ -53,7 +71,7 @@ def run(settings: Settings) -> None:
         http=cast(type[GuardedProtocol], protocol),
         # We have no websockets, and uvicorn's protocol for them has none of our limits.
         ws="none",
-        backlog=BACKLOG,
+        backlog=BACKLOG if shared is None else 1,
         host=settings.host,
         port=settings.port,
         log_config=None,
@@ -66,7 +84,7 @@ def run(settings: Settings) -> None:
         timeout_graceful_shutdown=GRACE_SECONDS,
     )
     try:
-        _Server(config, app).run()
+        _Server(config, app).run(None if shared is None else [shared])
     except SystemExit:
         # uvicorn exits with a code only. The failure itself is what the caller needs.
         if app.state.start_failure is not None:
@@ -74,16 +92,19 @@ def run(settings: Settings) -> None:
         raise
 
 
-def main() -> int:
-    """Serve until a stop signal and return 0.
+def main(arguments: Sequence[str]) -> int:
+    """Serve until a stop signal and return 0. arguments: none, or `--fd` and a number.
 
     Returns CANNOT_START if the settings, the port or the database do not allow a start.
     """
     with json_stderr():
         try:
             settings = load_settings()
-            refuse_taken_address(settings)
-            run(settings)
+            if arguments[:1] == [FD]:
+                run(settings, socket.socket(fileno=int(arguments[1])))
+            else:
+                refuse_taken_address(settings)
+                run(settings)
         except START_FAILURES as problem:
             log.critical("the API cannot start: %s", problem.detail)
             return CANNOT_START
@@ -91,4 +112,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))

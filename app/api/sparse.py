@@ -1,6 +1,6 @@
-"""Sparse answers: `fields=` chooses the members that a clip, or each item of a page, has.
+"""Sparse answers: `fields=` chooses the members that a clip, or each clip of a list, has.
 
-Only the chosen members are checked and written.
+Only the chosen members are checked and written. `hit_pages` does the same for hits.
 """
 
 from __future__ import annotations
@@ -30,11 +30,17 @@ def sparse_page(page: type[BaseModel], names: list[str], value: object) -> Respo
     return _written(_sparse_page(page, frozenset(names)), value)
 
 
-def clip_fields(names: list[str] | None) -> frozenset[str] | None:
-    """The clip fields that the chosen members of a hit need; None if all are needed."""
-    if names is None or "clip" in names:
-        return None
-    return frozenset(name.removeprefix("clip.") for name in names if name.startswith("clip."))
+def refuse_unknown(model: type[BaseModel], names: frozenset[str]) -> None:
+    """Raise BadField if a name is no member of a model, or of a model in it (`clip.id`)."""
+    for name in sorted(names):
+        outer, dot, inner = name.partition(".")
+        field = model.model_fields.get(outer)
+        kind = None if field is None else field.annotation
+        if field is not None and not dot:
+            continue
+        if not inner or not isinstance(kind, type) or not issubclass(kind, BaseModel):
+            raise _unknown(name, model)
+        refuse_unknown(kind, frozenset({inner}))
 
 
 def _written(model: type[BaseModel], value: object) -> Response:
@@ -52,6 +58,7 @@ def _sparse_page(page: type[BaseModel], names: frozenset[str]) -> type[BaseModel
 
 @lru_cache(CACHED)
 def _sparse(model: type[BaseModel], names: frozenset[str]) -> type[BaseModel]:
+    refuse_unknown(model, names)
     fields: dict[str, Any] = {}
     for name, field in model.model_fields.items():
         inner = frozenset(one.partition(".")[2] for one in names if one.startswith(f"{name}."))
@@ -60,9 +67,6 @@ def _sparse(model: type[BaseModel], names: frozenset[str]) -> type[BaseModel]:
             fields[name] = (kind, field)
         elif inner and isinstance(kind, type) and issubclass(kind, BaseModel):
             fields[name] = (_sparse(kind, inner), field)
-    unknown = {one for one in names if one.partition(".")[0] not in fields}
-    if unknown:
-        raise _unknown(min(unknown), model)
     return create_model(f"{model.__name__}Fields", __base__=Outgoing, **fields)
 
 

@@ -18,6 +18,10 @@ UNHEALTHY = 1
 
 Host = Annotated[str | None, typer.Option(help="Address to listen on [KINEDEX_HOST].")]
 Port = Annotated[int | None, typer.Option(help="Port to listen on [KINEDEX_PORT].")]
+Processes = Annotated[
+    int | None,
+    typer.Option(help="Processes of the API, which share the port [KINEDEX_PROCESSES]."),
+]
 RootPath = Annotated[
     str | None,
     typer.Option(help="Path below which a reverse proxy shows it [KINEDEX_ROOT_PATH]."),
@@ -29,6 +33,7 @@ def serve(
     host: Host = None,
     port: Port = None,
     root_path: RootPath = None,
+    processes: Processes = None,
     with_worker: Annotated[
         bool, typer.Option("--worker/--no-worker", help="Whether to run a worker too.")
     ] = True,
@@ -39,7 +44,7 @@ def serve(
     from app.store import identity
     from app.worker.supervisor import supervise
 
-    settings = settings_of(context, host=host, port=port, root_path=root_path)
+    settings = settings_of(context, host=host, port=port, root_path=root_path, processes=processes)
     configure_logging(settings.log_level.upper())
     identity.prepare(settings.database, settings.files_dir)
     refuse_exposure_without_keys(settings)

@@ -56,6 +56,13 @@ class Settings(BaseSettings):
         description="Address to listen on; if it is not loopback, an API key must exist.",
     )
     port: int = Field(8000, ge=0, le=65535, description="Port to listen on; 0 takes a free one.")
+    processes: int = Field(
+        1,
+        ge=1,
+        le=64,
+        description="Processes of the API, which share the port; about one for each core. Each has "
+        "its own copy of the indexes in memory.",
+    )
     require_keys: bool = Field(
         False, description="Require an API key on loopback too (elsewhere it is always required)."
     )
@@ -104,19 +111,20 @@ class Settings(BaseSettings):
     max_concurrent_uploads: int = Field(
         16,
         ge=1,
-        description="Most uploads to store that are received at once. Uploads to search with have "
-        "a limit of the same size. Further ones are answered 503 with Retry-After.",
+        description="Most uploads to store that one process receives at once. Uploads to search "
+        "with have a limit of the same size. Further ones are answered 503 with Retry-After.",
     )
     max_connections: int = Field(
         1000,
         ge=1,
-        description="Open connections in total; beyond it, the one that has waited longest is "
-        "closed.",
+        description="Open connections of one process; beyond it, the one that has waited longest "
+        "is closed.",
     )
     max_connections_per_address: int = Field(
         250,
         ge=1,
-        description="Open connections from one client address (behind a proxy: the proxy's).",
+        description="Open connections of one process from one client address (behind a proxy: the "
+        "proxy's).",
     )
     rate_limit_per_minute: int = Field(
         6000,

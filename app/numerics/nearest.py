@@ -33,6 +33,10 @@ GATHER_RATIO = 16
 """If a mask selects less than one vector in this many, only the selected vectors are copied and
 multiplied. Else all are multiplied."""
 
+MEASURED_AT_ONCE = 64
+"""Vectors whose exact distances are computed at a time: their float64 copies stay in the cache of a
+core."""
+
 _ROUNDING = 10.0**-DECIMALS
 _MAX_SPARE_ROWS = 4096
 """A search drops far rows as soon as it has this many more than 4 times the requested count."""
@@ -129,11 +133,13 @@ def distances_to(blocks: Sequence[Block], rows: IntArray, query: FloatArray) -> 
     first = start = 0
     for block in blocks:
         stop = start + int(np.searchsorted(rows[start:], first + len(block)))
-        if stop > start:
-            apart = block.vectors.take(rows[start:stop] - first, axis=0).astype(np.float64)
-            apart -= exact
-            distances[start:stop] = np.sqrt(np.vecdot(apart, apart))
+        own = rows[start:stop] - first
+        for begin in range(0, len(own), MEASURED_AT_ONCE):
+            some = own[begin : begin + MEASURED_AT_ONCE]
+            apart = block.vectors.take(some, axis=0) - exact
+            np.vecdot(apart, apart, out=distances[start + begin : start + begin + len(some)])
         first, start = first + len(block), stop
+    np.sqrt(distances, out=distances)
     return np.asarray(np.round(distances, DECIMALS, out=distances))
 
 
@@ -167,7 +173,7 @@ class _Search:
     def __init__(
         self, query: FloatArray, count: int, min_distance: float | None, max_length: float
     ) -> None:
-        self._query = query
+        self._minus_twice = query * np.float32(-2.0)  # exact, so that no error is added
         self._count = count
         self._square = float(query.astype(np.float64) @ query.astype(np.float64))
         self._error = _max_error(len(query), np.sqrt(self._square), max_length)
@@ -186,16 +192,14 @@ class _Search:
         """Collect the rows of a block that can be among the nearest; `first` is its first row."""
         if mask is not None and np.count_nonzero(mask) * GATHER_RATIO < len(mask):
             chosen = np.flatnonzero(mask)
-            values = block.squares[chosen] - 2.0 * (
-                block.vectors.take(chosen, axis=0) @ self._query
-            )
+            values = block.vectors.take(chosen, axis=0) @ self._minus_twice
+            values += block.squares[chosen]
             near = self._within_bounds(values)
             self._collect(first + chosen[near], values[near])
             return
-        values = block.vectors @ self._query
-        values *= -2.0
+        values = block.vectors @ self._minus_twice
         values += block.squares
-        if mask is not None:
+        if mask is not None and not mask.all():
             values[~mask] = np.inf
         near = self._within_bounds(values)
         self._collect(first + near, values[near])

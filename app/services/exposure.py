@@ -41,14 +41,27 @@ def refuse_exposure_without_keys(settings: Settings) -> None:
 
 def refuse_taken_address(settings: Settings) -> None:
     """Raise ConfigurationError if the service cannot listen, before it starts any process."""
+    bound(settings).close()
+
+
+def bound(settings: Settings) -> socket.socket:
+    """A socket at the address of the service, which does not listen yet.
+
+    Raises ConfigurationError if the address cannot be used.
+    """
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(
             settings.host, settings.port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
         )[0]
-        with socket.socket(family, kind, protocol) as trial:
+        trial = socket.socket(family, kind, protocol)
+        try:
             # The server sets it too: old connections in TIME_WAIT do not block the port.
             trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             trial.bind(address)
+        except OSError:
+            trial.close()
+            raise
+        return trial
     except OSError as error:
         raise ConfigurationError(
             f"Kinedex cannot listen on {settings.host} port {settings.port}: {error.strerror}.",

@@ -116,11 +116,15 @@ def verify(tx: Tx, secret: str, now: datetime | None = None) -> KeyRecord | None
     row = tx.execute(_BY_ID, {"the_id": key_id}).mappings().one_or_none()
     stored = _NO_HASH if row is None else row["secret_sha256"]
     same = hmac.compare_digest(stored, _hash(secret))
-    if row is None or not same or row["revoked_at"] is not None:
-        return None
-    if row["expires_at"] is not None and row["expires_at"] <= (now or utc_now()):
+    if row is None or not same or _has_ended(row, now or utc_now()):
         return None
     return _to_record(row)
+
+
+def valid(tx: Tx, key_id: str, now: datetime | None = None) -> KeyRecord | None:
+    """The key with this public id; None if it is unknown, revoked or expired."""
+    row = tx.execute(_BY_ID, {"the_id": key_id}).mappings().one_or_none()
+    return None if row is None or _has_ended(row, now or utc_now()) else _to_record(row)
 
 
 def note_use(tx: Tx, key_id: str, now: datetime) -> None:
@@ -162,6 +166,11 @@ def revoke(tx: Tx, key_id: str) -> KeyRecord:
 def _is_valid(now: datetime) -> ColumnElement[bool]:
     has_time = or_(api_keys.c.expires_at.is_(None), api_keys.c.expires_at > now)
     return and_(api_keys.c.revoked_at.is_(None), has_time)
+
+
+def _has_ended(row: RowMapping, now: datetime) -> bool:
+    has_expired = row["expires_at"] is not None and row["expires_at"] <= now
+    return has_expired or row["revoked_at"] is not None
 
 
 def _hash(secret: str) -> str:

@@ -5,11 +5,9 @@ full again. To take a token moves this time forward by the time that a token nee
 it would be farther away than the time in which an empty bucket fills, the bucket is empty. A time
 that is farther away already is from before the clock was set back: that bucket counts as full.
 
-The buckets are rows of one table. One statement takes a token, so that two processes never take the
-same one. With SQLite the table has a file of its own, without syncs: a token costs a tenth of a
-millisecond. A commit to the library's database costs several, and it would wait for other writers.
-With PostgreSQL it is an unlogged table. `limits` 5, the library for this, has no token bucket, and
-shares its counters between processes only by a server such as Redis.
+The buckets are rows of one table (`shared_rows`). One statement takes a token, so that two
+processes never take the same one. `limits` 5, the library for this, has no token bucket, and shares
+its counters between processes only by a server such as Redis.
 
 If the table cannot be used (the disk is full), calls are not limited, and the log says so.
 """
@@ -17,29 +15,26 @@ If the table cannot be used (the disk is full), calls are not limited, and the l
 from __future__ import annotations
 
 import logging
-import os
 import sqlite3
 import time
 from collections.abc import Callable, Collection
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
 from typing import TypeVar
 
-from sqlalchemy import Connection, Engine, bindparam, create_engine, event, text
-from sqlalchemy.engine import URL
+from sqlalchemy import Connection, Engine, bindparam, text
 from sqlalchemy.exc import DBAPIError
+
+from app.store.shared_rows import make_table, open_engine
 
 _log = logging.getLogger(__name__)
 _Result = TypeVar("_Result")
 
-FILE_NAME = "limits.sqlite3"
-BUSY_TIMEOUT_S = 1.0
 PRUNE_INTERVAL_S = 60.0
 """Time between two removals of full buckets, which are the same as no buckets."""
 
-_MAKE = "TABLE IF NOT EXISTS rate_buckets (name VARCHAR PRIMARY KEY, full_at DOUBLE PRECISION)"
+_TABLE = "rate_buckets (name VARCHAR PRIMARY KEY, full_at DOUBLE PRECISION)"
 _FROM = (
     "CASE WHEN rate_buckets.full_at > :now AND rate_buckets.full_at <= :horizon"
     " THEN rate_buckets.full_at ELSE :now END"
@@ -145,8 +140,7 @@ class Buckets:
                 return
             with self._engine.connect() as connection:
                 if not self._is_made:
-                    is_sqlite = connection.dialect.name == "sqlite"
-                    connection.execute(text(f"CREATE {'' if is_sqlite else 'UNLOGGED '}{_MAKE}"))
+                    make_table(connection, _TABLE)
                 connection.execute(_PRUNE, {"now": now})
             self._is_made, self._pruned_at = True, time.monotonic()
 
@@ -157,26 +151,7 @@ _TINY_S = 1e-6
 
 def open_buckets(library: Engine, folder: Path) -> Buckets:
     """The buckets of the library with this database; folder: for the file, with SQLite."""
-    if library.dialect.name != "sqlite":
-        return Buckets(library.execution_options(isolation_level="AUTOCOMMIT"))
-    file = folder / FILE_NAME
-    with suppress(OSError):  # a folder that cannot be written to has no limits
-        os.close(os.open(file, os.O_CREAT | os.O_RDWR, 0o600))  # it has addresses of clients
-    url = URL.create("sqlite", database=str(file))
-    engine = create_engine(
-        url,
-        connect_args={"timeout": BUSY_TIMEOUT_S, "isolation_level": None},
-        pool_reset_on_return=None,
-        skip_autocommit_rollback=True,
-        isolation_level="AUTOCOMMIT",
-    )
-
-    @event.listens_for(engine, "connect")
-    def _prepare(connection: sqlite3.Connection, _record: object) -> None:
-        connection.execute("PRAGMA synchronous = OFF")
-        connection.execute("PRAGMA journal_mode = WAL")
-
-    return Buckets(engine)
+    return Buckets(open_engine(library, folder))
 
 
 def _level(full_at: float, now: float, rate: Rate) -> Level:

@@ -16,75 +16,59 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
 
 from pydantic import SecretStr
 
 from app.config import ENV_PREFIX, Settings
 from app.services.exposure import CANNOT_START
+from app.worker.api_processes import ApiProcesses
+from app.worker.supervised import FIRST_DELAY_S, MAX_DELAY_S, SupervisedProcess
 
 _log = logging.getLogger(__name__)
 
-API = ("-P", "-m", "app.api.server")
 WORKER = ("-P", "-m", "app.worker")
-"""Arguments of Python for each process. They name modules, because this layer cannot import the
-API."""
+"""Arguments of Python."""
 
 POLL_S = 0.2
 """Time between two looks at the processes."""
 STEADY_S = 10.0
 """A process that has run this long has started well: after its next death the delay is
 FIRST_DELAY_S again."""
-FIRST_DELAY_S, MAX_DELAY_S = 0.5, 30.0
-"""Delay before a dead process is started again; it doubles with each early death."""
 GRACE_S = 15.0
 """Time to finish after SIGTERM, before SIGKILL."""
 _PR_SET_PDEATHSIG = 1
 """Option of prctl(2): the signal that a process gets when its parent dies."""
 
 
-@dataclass(slots=True)
-class SupervisedProcess:
-    """A process that the supervisor keeps running.
-
-    arguments: of Python; started, next_start: seconds of the monotonic clock; delay: seconds
-    before the next start after a death; has_been_steady: whether it ever ran for STEADY_S.
-    """
-
-    name: str
-    arguments: Sequence[str]
-    process: subprocess.Popen[bytes] | None = None
-    started: float = 0.0
-    next_start: float = 0.0
-    delay: float = FIRST_DELAY_S
-    has_been_steady: bool = field(default=False)
-
-
 def supervise(settings: Settings, with_worker: bool = True) -> int:
     """Run the API, and a worker, until SIGTERM or SIGINT; returns the exit code.
 
     Call it from the main thread. The exit code is 0 after a signal, otherwise the code of a
-    process that could not start.
+    process that could not start. Raises ConfigurationError.
     """
-    processes = [SupervisedProcess("api", API)]
-    if with_worker:
-        processes.append(SupervisedProcess("worker", WORKER))
+    workers = [SupervisedProcess("worker", WORKER)] if with_worker else []
     stop = threading.Event()
     handlers = {s: signal.signal(s, lambda *_: stop.set()) for s in (signal.SIGTERM, signal.SIGINT)}
     try:
-        return keep_running(processes, environment(settings), stop)
+        apis = ApiProcesses(settings)
+        with apis.all() as processes:
+            return keep_running([*processes, *workers], environment(settings), stop, apis.close)
     finally:
         for sign, handler in handlers.items():
             signal.signal(sign, handler)
 
 
 def keep_running(
-    processes: Sequence[SupervisedProcess], environ: dict[str, str], stop: threading.Event
+    processes: Sequence[SupervisedProcess],
+    environ: dict[str, str],
+    stop: threading.Event,
+    before_end: Callable[[], None] = lambda: None,
 ) -> int:
     """Start each process, and start it again when it dies, until `stop` is set; then end all.
 
-    Returns 0, or the exit code of a process that could not start.
+    before_end: is called before the processes are told to end. Returns 0, or the exit code of a
+    process that could not start.
     """
     try:
         while not stop.is_set():
@@ -95,6 +79,7 @@ def keep_running(
             stop.wait(POLL_S)
         return 0
     finally:
+        before_end()
         _end(processes)
 
 
@@ -145,7 +130,8 @@ def _start(one: SupervisedProcess, environ: dict[str, str]) -> None:
     # In its own session: a terminal's Ctrl-C reaches the supervisor only, which forwards it once.
     one.process = subprocess.Popen(  # noqa: S603 - our own interpreter and modules
         [sys.executable, *one.arguments],
-        env=environ,
+        env={**environ, **one.variables},
+        pass_fds=one.files,
         start_new_session=True,
         preexec_fn=_die_with_supervisor,
     )

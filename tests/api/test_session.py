@@ -8,8 +8,7 @@ from pathlib import Path
 import httpx2
 import pytest
 
-from app.api.guard import sessions
-from app.api.guard.sessions import COOKIE, MAX_IDLE_SECONDS, Sessions
+from app.api.guard.access_check import COOKIE
 from app.config import load_settings
 from app.store import keys
 from app.store.key_role import KeyRole
@@ -155,22 +154,17 @@ def test_an_empty_key_is_enough_where_no_keys_are_needed(
     assert_problem(_sign_in(page, ""), 401, "unauthorized")
 
 
-def test_sessions_end_after_a_time_without_a_call() -> None:
-    now = 0.0
-    kept = Sessions(clock=lambda: now)
-    token = kept.begin("the key")
-    now = MAX_IDLE_SECONDS
-    assert kept.key_of(token) == "the key"
-    now = 2 * MAX_IDLE_SECONDS
-    assert kept.key_of(token) == "the key"
-    now = 3 * MAX_IDLE_SECONDS + 1
-    assert kept.key_of(token) == ""
-
-
-def test_the_session_unused_for_longest_leaves_first(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sessions, "MAX_SESSIONS", 2)
-    kept = Sessions()
-    first, second = kept.begin("a"), kept.begin("b")
-    assert kept.key_of(first) == "a"
-    third = kept.begin("c")
-    assert [kept.key_of(token) for token in (first, second, third)] == ["a", "", "c"]
+def test_who_is_signed_in_stays_so_after_a_restart(tmp_path: Path) -> None:
+    with serve(tmp_path / "data", require_keys=True) as live:
+        store = _store(live.data_dir)
+        with store.write() as tx:
+            made = keys.create(tx, READ, "read")
+        store.close()
+        with live.client(headers={"Origin": live.url}) as page:
+            token = _sign_in(page, made.secret).cookies[COOKIE]
+    with serve(tmp_path / "data", require_keys=True) as live:
+        headers = {"Origin": live.url, "Cookie": f"{COOKIE}={token}"}
+        with live.client(headers=headers) as page:
+            assert page.get("/v1/session").json() == _session("read", keys_needed=True)
+    stored = [path.read_bytes() for path in live.data_dir.glob("*.sqlite3*")]
+    assert not any(token.encode() in content for content in stored)

@@ -12,7 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sqlalchemy import create_engine
 
-from app.store.rates import FILE_NAME, Buckets, Level, Rate, open_buckets
+from app.store.rates import Buckets, Level, Rate, open_buckets
+from app.store.shared_rows import FILE_NAME
 
 SQLITE = create_engine("sqlite:///unused")
 RATE = Rate(per_minute=60, burst=5)

@@ -17,7 +17,9 @@ import pytest
 from app.config import Settings
 from app.services.exposure import CANNOT_START
 from app.worker import supervisor
-from app.worker.supervisor import SupervisedProcess, environment, keep_running
+from app.worker.api_processes import API
+from app.worker.supervised import SupervisedProcess
+from app.worker.supervisor import environment, keep_running
 from tests.live import wait_until
 
 TIMEOUT_S = 120.0
@@ -92,7 +94,7 @@ def _database_of_another_version(folder: Path) -> None:
     database.close()
 
 
-@pytest.mark.parametrize("arguments", [supervisor.API, supervisor.WORKER], ids=["api", "worker"])
+@pytest.mark.parametrize("arguments", [API, supervisor.WORKER], ids=["api", "worker"])
 def test_no_process_starts_on_a_database_of_another_version(
     arguments: tuple[str, ...], tmp_path: Path
 ) -> None:
@@ -112,7 +114,7 @@ def test_a_port_in_use_ends_the_api(tmp_path: Path) -> None:
             "KINEDEX_DATA_DIR": str(tmp_path / "data"),
             "KINEDEX_PORT": str(taken.getsockname()[1]),
         }
-        command = [sys.executable, *supervisor.API]
+        command = [sys.executable, *API]
         ended = subprocess.run(command, env=environ, capture_output=True, text=True, check=False)
     assert (ended.returncode, "cannot listen" in ended.stderr) == (CANNOT_START, True)
 
@@ -120,7 +122,8 @@ def test_a_port_in_use_ends_the_api(tmp_path: Path) -> None:
 SUPERVISOR = """
 import os, sys, threading
 from pathlib import Path
-from app.worker.supervisor import SupervisedProcess, keep_running
+from app.worker.supervised import SupervisedProcess
+from app.worker.supervisor import keep_running
 sleeper = SupervisedProcess("sleeper", ("-c", sys.argv[2], sys.argv[1]))
 keep_running([sleeper], dict(os.environ), threading.Event())
 """
@@ -158,7 +161,7 @@ def test_all_settings_reach_the_processes(tmp_path: Path) -> None:
     assert variables["KINEDEX_TRUSTED_PROXIES"] == "10.0.0.1,10.0.0.2"
 
 
-@pytest.mark.parametrize("arguments", [supervisor.API, supervisor.WORKER], ids=["api", "worker"])
+@pytest.mark.parametrize("arguments", [API, supervisor.WORKER], ids=["api", "worker"])
 def test_a_folder_named_app_in_the_working_directory_is_ignored(
     arguments: tuple[str, ...], tmp_path: Path
 ) -> None:

@@ -19,20 +19,22 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.failures.handlers import answer_failure
 from app.api.failures.problems import NotReadyYet
-from app.api.guard.callers import Caller, address_of, given_key
+from app.api.guard.callers import Caller, address_of, caller_of_session, given_key
 from app.api.guard.own_address import refuse_other_pages, refuse_other_sites
 from app.api.guard.paths import path_of
 from app.api.guard.rates import RateLimits
-from app.api.guard.sessions import COOKIE, Sessions
 from app.errors import StorageError
 from app.kinedex_error import KinedexError
 from app.services.library.library import Library
 from app.store import keys
 from app.store.database.ids import utc_now
 from app.store.keys import KeyRecord
+from app.store.sessions import Sessions
 
 log = logging.getLogger(__name__)
 
+COOKIE = "kinedex_session"
+"""The cookie that holds the token of a session (`app.store.sessions`)."""
 SIGN_IN = ("POST", "/v1/session")
 """The only call whose body is read without a key: the key is in it."""
 PROBES = frozenset({"/livez", "/readyz"})
@@ -74,11 +76,16 @@ class AccessCheck:
         if library is None:
             raise NotReadyYet
         limits: RateLimits = scope["app"].state.limits
-        sent = given_key(Headers(scope=scope))
-        key = sent or _key_of_session(scope)
+        sent, address = given_key(Headers(scope=scope)), address_of(scope)
+        token = "" if sent else Request(scope).cookies.get(COOKIE, "")
+        sessions: Sessions = scope["app"].state.sessions
 
         def find() -> tuple[Caller, dict[str, str]]:
-            caller = limits.identify(key, address_of(scope), may_fail=bool(sent))
+            key_id = sessions.key_of(token)  # which was right once, so that it is no try
+            if key_id:
+                caller = caller_of_session(library, key_id, address)
+            else:
+                caller = limits.identify(sent, address)
             # For the log, which also names the key of a call that is refused.
             scope.setdefault("state", {})["caller"] = caller
             return caller, limits.take(caller)
@@ -86,7 +93,7 @@ class AccessCheck:
         caller, headers = await to_thread.run_sync(find, limiter=self._threads)
         if caller.is_free:
             refuse_other_sites(scope, library.settings.cors_origins)
-        elif key and not sent:
+        elif caller.has_key and not sent:
             refuse_other_pages(scope)
         call = (scope["method"], path_of(scope))
         if scope["method"] not in WITHOUT_BODY and call != SIGN_IN:
@@ -122,8 +129,3 @@ def _with_headers(send: Send, headers: dict[str, str]) -> Send:
         await send(message)
 
     return send_with_headers
-
-
-def _key_of_session(scope: Scope) -> str:
-    sessions: Sessions = scope["app"].state.sessions
-    return sessions.key_of(Request(scope).cookies.get(COOKIE, ""))

@@ -70,6 +70,17 @@ def find_caller(lib: Library, given: str, address: str | None) -> Caller:
     return Caller(has_key=bool(given), is_free=is_free, address=address, key=key)
 
 
+def caller_of_session(lib: Library, key_id: str, address: str | None) -> Caller:
+    """The caller whose session stands for a key; `key_id` is empty without a session.
+
+    Raises StorageError.
+    """
+    with lib.store.read() as tx:
+        is_free = is_open(lib, tx)
+        key = keys.valid(tx, key_id) if key_id and not is_free else None
+    return Caller(has_key=bool(key_id), is_free=is_free, address=address, key=key)
+
+
 def address_of(scope: Scope) -> str | None:
     """The client's IP address; None for a client without one (a Unix socket)."""
     client = scope.get("client")

@@ -184,9 +184,9 @@ class Gates:
     seconds: float
 
     @classmethod
-    def of(cls, seconds: float) -> Gates:
-        """Make the gates for the number of cores of this machine."""
-        cores = len(os.sched_getaffinity(0))
+    def of(cls, seconds: float, processes: int = 1) -> Gates:
+        """Make the gates of one of several processes that share the cores of this machine."""
+        cores = -(-len(os.sched_getaffinity(0)) // processes)
         heavy = min(max(cores, MIN_HEAVY), MAX_HEAVY)
         return cls(
             heavy=Gate("heavy", heavy, MAX_WAITING_PER_HEAVY * heavy),

@@ -42,14 +42,13 @@ class RateLimits:
         per_minute = settings.rate_limit_per_minute
         self._rate = Rate(per_minute, settings.rate_limit_burst) if per_minute else None
 
-    def identify(self, given: str, address: str | None, *, may_fail: bool = True) -> Caller:
+    def identify(self, given: str, address: str | None) -> Caller:
         """Find the caller by a key; `given` is empty without one.
 
-        may_fail: whether a wrong key counts as a try; not that of a session, which was right once.
         Raises RateLimited after too many wrong keys, StorageError.
         """
         caller = find_caller(self._library, given, address)
-        if caller.is_free or not given or not may_fail:
+        if caller.is_free or not given:
             return caller
         self._refuse_if_blocked(f"failures:{address_group(address or '')}")
         if caller.role is None:

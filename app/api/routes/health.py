@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Request
 
 from app.api.deps import Lib
 from app.api.failures.problems import NotReadyYet, Unhealthy
 from app.api.guard.admission import OwnThreads, at_once
+from app.api.loading import Loading
 from app.api.openapi import refusals
 from app.api.schemas.health import Alive, Ready
 from app.api.schemas.problem import ProblemPlace
@@ -26,7 +27,7 @@ async def livez() -> Alive:
 
 
 @router.get("/readyz", dependencies=[at_once], responses={503: refusals(503)[503]})
-async def readyz(lib: Lib) -> Ready:
+async def readyz(request: Request, lib: Lib) -> Ready:
     """Answer 200 while every call can be answered. Needs no key.
 
     The answer is 503 before the index is loaded, and while the database is damaged, deleted or
@@ -34,10 +35,11 @@ async def readyz(lib: Lib) -> Ready:
     every problem. Stored files that are missing or damaged are counted in `warnings`, because the
     answer stays 200: only downloads and new analyses need these files.
     """
-    return await _threads.run(lambda: _look(lib))
+    loading: Loading | None = request.app.state.loading
+    return await _threads.run(lambda: _look(lib, loading))
 
 
-def _look(lib: Library) -> Ready:
+def _look(lib: Library, loading: Loading | None) -> Ready:
     troubles = lib.health.troubles()
     if troubles:
         raise Unhealthy(places=troubles)
@@ -46,6 +48,7 @@ def _look(lib: Library) -> Ready:
     return Ready(
         library_version=lib.index.version,
         clips=len(lib.index),
+        is_warm=loading is not None and loading.is_warm,
         warnings=_warnings(lib.health.files),
     )
 

@@ -10,10 +10,10 @@ from fastapi import APIRouter, Depends, Request, Response
 from app.api.bodies import is_multipart, read_form, read_json
 from app.api.deps import Lib, reads_source
 from app.api.guard.admission import heavy
+from app.api.hit_pages import ChosenFields, HitPage
 from app.api.openapi import body, refusals
 from app.api.queries import QUERY_FILES, source_of
 from app.api.schemas.pose import A_POSE, PoseHits, PoseSearch, PoseSearchForm
-from app.api.sparse import ChosenFields, clip_fields, sparse_page
 from app.errors import ClipNotReady
 from app.services.find.by_pose import PoseQuery, find_pose
 
@@ -51,10 +51,10 @@ async def _pose_query(request: Request) -> PoseQuery:
 )
 def search_pose(
     lib: Lib, query: Annotated[PoseQuery, Depends(_pose_query)], fields: ChosenFields = None
-) -> PoseHits | Response:
+) -> Response:
     """Find the clips that take a pose, and the times at which they do.
 
     The pose is that of a stored clip or of an uploaded file at a time, or 13 positions.
     """
-    found = find_pose(lib, replace(query, clip_fields=clip_fields(fields)))
-    return sparse_page(PoseHits, fields, found) if fields else PoseHits.model_validate(found)
+    page = HitPage.of(PoseHits, fields)
+    return page.answer(find_pose(lib, replace(query, clip_fields=page.clip_fields)))

@@ -10,11 +10,11 @@ from fastapi import APIRouter, Depends, Request, Response
 from app.api.bodies import is_multipart, read_form, read_json, require_json
 from app.api.deps import Lib, reads_source
 from app.api.guard.admission import heavy
+from app.api.hit_pages import ChosenFields, HitPage
 from app.api.openapi import body, refusals
 from app.api.queries import QUERY_FILES, file_of, source_of
 from app.api.schemas.composed_search import ComposedHits, ComposedSearch, ComposedSearchForm
 from app.api.schemas.search import MotionHits, MotionSearch, MotionSearchForm, WordHits, WordSearch
-from app.api.sparse import ChosenFields, clip_fields, sparse_page
 from app.errors import ClipNotReady, ModelNotFitted, NotEnoughLabels
 from app.services.find import find
 from app.services.find.by_parts import find_by_parts
@@ -88,14 +88,14 @@ async def _motion_query(request: Request) -> MotionQuery:
 )
 def search_motion(
     lib: Lib, query: Annotated[MotionQuery, Depends(_motion_query)], fields: ChosenFields = None
-) -> MotionHits | Response:
+) -> Response:
     """Find motions like a stored clip, a part of one, or an uploaded file.
 
     With scope `windows`, find parts of clips, with their start and end. With scope `segments`,
     find motions from one keypose to the next.
     """
-    found = find.find_motion(lib, replace(query, clip_fields=clip_fields(fields)))
-    return sparse_page(MotionHits, fields, found) if fields else MotionHits.model_validate(found)
+    page = HitPage.of(MotionHits, fields)
+    return page.answer(find.find_motion(lib, replace(query, clip_fields=page.clip_fields)))
 
 
 @router.post(
@@ -104,13 +104,13 @@ def search_motion(
     response_model=WordHits,
     responses=refusals(400, 404, 413, 415, ModelNotFitted, NotEnoughLabels),
 )
-def search_words(lib: Lib, sent: WordSearch, fields: ChosenFields = None) -> WordHits | Response:
+def search_words(lib: Lib, sent: WordSearch, fields: ChosenFields = None) -> Response:
     """Find motions for words, phrases or sentences. The most probable motion comes first.
 
     The `score` of a hit is a probability, in both modes.
     """
-    found = find.find_words(lib, replace(sent.query(), clip_fields=clip_fields(fields)))
-    return sparse_page(WordHits, fields, found) if fields else WordHits.model_validate(found)
+    page = HitPage.of(WordHits, fields)
+    return page.answer(find.find_words(lib, replace(sent.query(), clip_fields=page.clip_fields)))
 
 
 async def _composed_query(request: Request) -> ComposedQuery:
@@ -134,13 +134,11 @@ async def _composed_query(request: Request) -> ComposedQuery:
 )
 def search_parts(
     lib: Lib, query: Annotated[ComposedQuery, Depends(_composed_query)], fields: ChosenFields = None
-) -> ComposedHits | Response:
+) -> Response:
     """Find motions by several parts together: examples and words, for something or against it.
 
     A clip is a good hit if it is like every example that is for something, carries the words, and
     is like no example that is against something. Each hit tells what each part contributed.
     """
-    found = find_by_parts(lib, replace(query, clip_fields=clip_fields(fields)))
-    return (
-        sparse_page(ComposedHits, fields, found) if fields else ComposedHits.model_validate(found)
-    )
+    page = HitPage.of(ComposedHits, fields)
+    return page.answer(find_by_parts(lib, replace(query, clip_fields=page.clip_fields)))

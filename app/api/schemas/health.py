@@ -22,6 +22,10 @@ class Ready(Outgoing):
     status: Literal["ready"] = "ready"
     library_version: int
     clips: int
+    is_warm: bool = Field(
+        description="Whether the first search of each kind is as fast as later ones. Until then, "
+        "it also loads an index or a model."
+    )
     warnings: list[ProblemPlace] = Field(
         description="What is damaged although every call can be answered, such as stored files: "
         "`kinedex doctor --mend` mends it.",

@@ -88,8 +88,12 @@ class RowsView:
 
     def masks(self, mask: BoolArray) -> list[BoolArray]:
         """For each block, which of its rows (m,) belong to a clip in `mask` (n,)."""
-        ends = np.cumsum([len(block) for block in self.blocks])
-        return np.split(self.rows_of(mask), ends[:-1]) if self.blocks else []
+        own, first = self.rows_of(mask), 0
+        parts = []
+        for block in self.blocks:
+            parts.append(own[first : first + len(block)])
+            first += len(block)
+        return parts
 
     def distances(self, queries: FloatArray, rows: IntArray) -> FloatArray:
         """(q, k) float32 Euclidean distances of `queries` (q, width) to ascending `rows` (k,)."""

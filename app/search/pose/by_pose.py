@@ -1,12 +1,14 @@
 """Rank clips by the distance of their nearest frame to one pose, exactly.
 
 Each clip's pose cover gives a lower bound of this distance: the distance to a pose of the cover
-less that pose's radius. The frames of the clips are compared in the order of these bounds, until no
-other clip can be nearer than the hits. So no hit is missed, and most clips are never read.
+less that pose's radius. The frames of the clips are compared in the order of these bounds, and
+clips with equal bounds in the order of their ids, until no other clip can come before the last hit.
+So no hit is missed, and most clips are never read, also if many clips contain the same pose.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,8 +25,14 @@ from app.search.ranking.cursor import Position
 POSES = Layout(("pose_cover",), POSE_WIDTH, facts=2, several=True)
 """The rows of the pose index; their facts are frame and radius."""
 POSITIONS = "role_positions"
+FIRST_CLIPS = 16
+"""The number of clips whose frames are compared first. Each time, twice as many follow."""
+
 MAX_CLIPS_AT_ONCE = 64
 """The largest number of clips whose frames are compared at a time."""
+
+SORTED_FIRST = 1024
+"""The number of clips that are sorted first. If they are not enough, four times as many follow."""
 
 MAX_FRAMES_AT_ONCE = 100_000
 """The largest number of poses that are compared at a time."""
@@ -82,28 +90,39 @@ class PoseRanking:
         """The first `limit` hits after a position. Its `clip_id` is the text of a `PoseHit.key`."""
         last_seen = (-1.0, "") if after is None else (after.distance, after.clip_id)
         hits: list[PoseHit] = []
-        max_distance, waiting = np.inf, self._mask.copy()
-        while len(numbers := self._next(waiting, max_distance)):
+        for numbers in self._batches():
+            if len(hits) > limit and not self._may_precede(int(numbers[0]), hits[-1]):
+                break
             hits += [hit for hit in self._hits_in(numbers) if hit.key > last_seen]
-            if len(hits) > limit:
-                # one hit more than the page, so that the page knows whether others follow
-                hits = sorted(hits, key=lambda hit: hit.key)[: limit + 1]
-                max_distance = hits[-1].match.distance
-        hits.sort(key=lambda hit: hit.key)
+            # one hit more than the page, so that the page knows whether others follow
+            hits = sorted(hits, key=lambda hit: hit.key)[: limit + 1]
         return PosePage(tuple(hits[:limit]), len(hits) > limit)
 
-    def _next(self, waiting: BoolArray, max_distance: float) -> IntArray:
-        """The numbers of the next clips to compare; they are removed from `waiting` (n,).
+    def _may_precede(self, number: int, hit: PoseHit) -> bool:
+        """Whether a clip can have a frame that comes before a hit."""
+        bound = self._bounds[number], str(self._ids[number])
+        return bound <= (hit.match.distance, hit.clip_id)
 
-        These clips can have a frame within `max_distance`, and have the smallest bounds.
-        """
-        numbers = np.flatnonzero(waiting & (self._bounds <= max_distance))
-        if len(numbers) > MAX_CLIPS_AT_ONCE:
-            numbers = numbers[
-                np.argpartition(self._bounds[numbers], MAX_CLIPS_AT_ONCE)[:MAX_CLIPS_AT_ONCE]
-            ]
-        waiting[numbers] = False
-        return numbers
+    def _batches(self) -> Iterator[IntArray]:
+        """The numbers of the clips by bound and id, in batches."""
+        size = FIRST_CLIPS
+        for numbers in self._in_order():
+            first = 0
+            while first < len(numbers):
+                size = min(size, MAX_CLIPS_AT_ONCE)
+                yield numbers[first : first + size]
+                first, size = first + size, 2 * size
+
+    def _in_order(self) -> Iterator[IntArray]:
+        """The numbers of the clips by bound and id. Only as many are sorted as are read."""
+        numbers, count = np.flatnonzero(self._mask), SORTED_FIRST
+        while len(numbers):
+            bounds = self._bounds[numbers]
+            last = np.inf if len(numbers) <= count else np.partition(bounds, count)[count]
+            is_near = bounds <= last
+            near = numbers[is_near]
+            yield near[np.lexsort((self._ids[near].astype(str), bounds[is_near]))]
+            numbers, count = numbers[~is_near], 4 * count
 
     def _hits_in(self, numbers: IntArray) -> list[PoseHit]:
         """The hits in the clips with these numbers; deleted clips have none."""
@@ -144,11 +163,12 @@ def pose_distances(positions: FloatArray, query: FloatArray) -> FloatArray:
 
 
 def _bounds(rows: RowsView, query: FloatArray) -> FloatArray:
-    """(n,) for each clip a lower bound of the distances of its frames to `query` (36,)."""
+    """(n,) for each clip a lower bound, at least 0, of its frames' distances to `query` (36,)."""
     if rows.starts is None or not len(rows.starts):
         return np.zeros(0)
     squares, error = squared_distances(rows.blocks, query)
     squares -= np.float32(error)
     np.sqrt(np.maximum(squares, 0.0, out=squares), out=squares)
     squares -= rows.facts[:, _RADIUS]
-    return np.asarray(np.minimum.reduceat(squares, rows.starts))
+    bounds = np.minimum.reduceat(squares, rows.starts)
+    return np.asarray(np.maximum(bounds, 0.0, out=bounds))

@@ -107,7 +107,7 @@ class Paging:
         return HitPage(items, cursors.encode(position, self.question))
 
     def _clips(self, tx: Tx, ids: Collection[str]) -> Mapping[str, ClipRecord | PartialClip]:
-        if self.clip_fields is None or not self.clip_fields <= partial.PLAIN:
+        if self.clip_fields is None:
             return stored.get_many(tx, ids)
         return partial.read(tx, ids, {"duration", *self.clip_fields})
 

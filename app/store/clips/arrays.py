@@ -13,6 +13,7 @@ from app.store.clips.repository import in_batches
 from app.store.database.blobs import from_blob, from_blob_if_whole, to_blob
 from app.store.database.engine import Tx
 from app.store.database.tables import clip_arrays
+from app.store.database.text_list import as_list, is_one_of
 
 _CONTENT = (clip_arrays.c.dtype, clip_arrays.c.shape, clip_arrays.c.data)
 
@@ -22,7 +23,7 @@ _NAMED = select(clip_arrays.c.name, *_CONTENT).where(
     clip_arrays.c.name.in_(bindparam("names", expanding=True)),
 )
 _OF_MANY = select(clip_arrays.c.clip_id, *_CONTENT).where(
-    clip_arrays.c.clip_id.in_(bindparam("ids", expanding=True)),
+    is_one_of(clip_arrays.c.clip_id, "ids"),
     clip_arrays.c.name == bindparam("the_name"),
 )
 _OF_VERSION = _OF_MANY.where(clip_arrays.c.version == bindparam("the_version"))
@@ -84,7 +85,7 @@ def get_many(
     """
     array_of: dict[str, NDArray[Any]] = {}
     for batch in in_batches(clip_ids):
-        parameters = {"ids": batch, "the_name": name}
+        parameters = {"ids": as_list(batch), "the_name": name}
         if version is None:
             rows = tx.execute(_OF_MANY, parameters)
         else:

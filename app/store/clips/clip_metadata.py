@@ -22,16 +22,14 @@ from app.store.clips.metadata_values import (
 )
 from app.store.database.engine import Tx
 from app.store.database.tables import clip_metadata
-
-IDS_PER_QUERY = 500
-"""A limit, because databases limit the number of parameters of one statement."""
+from app.store.database.text_list import as_list, is_one_of
 
 # Built once, because to build a statement takes longer than to execute it.
 _ADD = insert(clip_metadata)
 _REMOVE = delete(clip_metadata).where(clip_metadata.c.clip_id == bindparam("the_id"))
 _OF_CLIPS = (
     select(clip_metadata.c.clip_id, clip_metadata.c.key, clip_metadata.c.kind, clip_metadata.c.text)
-    .where(clip_metadata.c.clip_id.in_(bindparam("ids", expanding=True)))
+    .where(is_one_of(clip_metadata.c.clip_id, "ids"))
     .order_by(clip_metadata.c.clip_id, clip_metadata.c.key)
 )
 
@@ -51,11 +49,8 @@ def put(tx: Tx, clip_id: str, metadata: Metadata) -> None:
 def get_many(tx: Tx, clip_ids: Collection[str]) -> dict[str, dict[str, MetadataValue]]:
     """The metadata by clip id, each sorted by key; clips without metadata are left out."""
     found: dict[str, dict[str, MetadataValue]] = {}
-    every = list(clip_ids)
-    for start in range(0, len(every), IDS_PER_QUERY):
-        rows = tx.execute(_OF_CLIPS, {"ids": every[start : start + IDS_PER_QUERY]})
-        for clip_id, key, kind, text in rows:
-            found.setdefault(clip_id, {})[key] = from_text(kind, text)
+    for clip_id, key, kind, text in tx.execute(_OF_CLIPS, {"ids": as_list(clip_ids)}):
+        found.setdefault(clip_id, {})[key] = from_text(kind, text)
     return found
 
 

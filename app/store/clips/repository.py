@@ -37,6 +37,7 @@ from app.store.clips.rows import (
 from app.store.database.engine import Tx
 from app.store.database.ids import new_id, utc_now
 from app.store.database.tables import clip_words, clips
+from app.store.database.text_list import as_list, is_one_of
 
 _SEARCHED = frozenset({"name", "path", "metadata", "captions"})
 """The fields that `rows.searched_text` takes."""
@@ -44,7 +45,7 @@ IDS_PER_QUERY = 500
 """A limit, because databases limit the number of parameters of one statement."""
 
 # Built once, because to build a statement takes longer than to execute it.
-_SOME = select(clips).where(clips.c.id.in_(bindparam("ids", expanding=True)))
+_SOME = select(clips).where(is_one_of(clips.c.id, "ids"))
 _STATE = select(clips.c.state).where(clips.c.id == bindparam("the_id"))
 _VERSION = select(clips.c.changed_version).where(
     clips.c.id == bindparam("the_id"), clips.c.state == ClipState.READY.value
@@ -54,7 +55,7 @@ _CHANGE = update(clips).where(clips.c.id == bindparam("the_id"))
 _ADD, _ADD_WORDS = insert(clips), insert(clip_words)
 _WORDS = (
     select(clip_words.c.clip_id, clip_words.c.word)
-    .where(clip_words.c.clip_id.in_(bindparam("ids", expanding=True)))
+    .where(is_one_of(clip_words.c.clip_id, "ids"))
     .order_by(clip_words.c.clip_id, clip_words.c.position)
 )
 
@@ -308,7 +309,7 @@ def _not_found(clip_id: str) -> ClipNotFound:
 
 def _load(tx: Tx, clip_ids: Collection[str]) -> list[ClipRecord]:
     query = visibility.of_visible(_SOME)
-    rows = tx.execute(query, {"ids": list(clip_ids)}).mappings().all()
+    rows = tx.execute(query, {"ids": as_list(clip_ids)}).mappings().all()
     return to_records(tx, rows)
 
 
@@ -326,7 +327,6 @@ def to_records(tx: Tx, rows: Sequence[RowMapping]) -> list[ClipRecord]:
 def words_of(tx: Tx, clip_ids: Collection[str]) -> dict[str, tuple[str, ...]]:
     """Words by clip id, in the client's order."""
     words_by_id: dict[str, list[str]] = {}
-    for batch in in_batches(clip_ids):
-        for clip_id, word in tx.execute(_WORDS, {"ids": batch}).all():
-            words_by_id.setdefault(clip_id, []).append(word)
+    for clip_id, word in tx.execute(_WORDS, {"ids": as_list(clip_ids)}).all():
+        words_by_id.setdefault(clip_id, []).append(word)
     return {clip_id: tuple(words) for clip_id, words in words_by_id.items()}

@@ -16,6 +16,7 @@ from app.store.clips.record import ClipState, folder_of
 from app.store.clips.rows import searched_text
 from app.store.database import tables as t
 from app.store.database.engine import Tx
+from app.store.database.text_list import as_list, is_one_of
 
 BATCH = 500
 """Clips in one batch."""
@@ -38,9 +39,7 @@ class ClipTexts:
 
 
 _COLUMNS = tuple(field.name for field in fields(ClipTexts) if field.name in t.clips.c)
-_TEXTS = select(*(t.clips.c[name] for name in _COLUMNS)).where(
-    t.clips.c.id.in_(bindparam("ids", expanding=True))
-)
+_TEXTS = select(*(t.clips.c[name] for name in _COLUMNS)).where(is_one_of(t.clips.c.id, "ids"))
 _REMOVE_WORD = delete(t.clip_words).where(
     t.clip_words.c.clip_id == bindparam("the_id"), t.clip_words.c.word == bindparam("the_word")
 )
@@ -55,7 +54,7 @@ def read(tx: Tx) -> Iterator[ClipTexts]:
     for ids in repository.in_batches(every, BATCH):
         words, metadata = repository.words_of(tx, ids), metadata_rows.get_many(tx, ids)
         captions = clip_captions.get_many(tx, ids)
-        for row in tx.execute(_TEXTS, {"ids": ids}).mappings():
+        for row in tx.execute(_TEXTS, {"ids": as_list(ids)}).mappings():
             values = dict(row) | {
                 "imported": row["imported"] or {},
                 "captions": captions.get(row["id"], ()),

@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import TypeVar
 
-from sqlalchemy import ColumnElement, Select, true
+from sqlalchemy import ColumnElement, Select, func, true
 
 from app.store.database.tables import clips
 
@@ -42,9 +42,13 @@ def is_visible() -> ColumnElement[bool]:
 
 
 def of_visible(query: Select[_Row]) -> Select[_Row]:
-    """A query of clips, without those that are not visible."""
+    """A query of clips by their ids, without those that are not visible."""
+    source = _source.get()
     # Most calls see all clips: then the query stays the one that was built once.
-    return query if _source.get() is None else query.where(is_visible())
+    if source is None:
+        return query
+    # No index has this expression. With the index of the source, SQLite would read all its clips.
+    return query.where(func.nullif(clips.c.source, "") == source)
 
 
 _source: ContextVar[str | None] = ContextVar("visible_source", default=None)

@@ -29,6 +29,8 @@ def _small() -> object:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(rows_module, "BLOCK", 16)
         patch.setattr(by_pose, "MAX_CLIPS_AT_ONCE", 3)
+        patch.setattr(by_pose, "FIRST_CLIPS", 2)
+        patch.setattr(by_pose, "SORTED_FIRST", 4)
         yield
 
 
@@ -121,6 +123,15 @@ def test_most_clips_are_never_loaded() -> None:
     page = searched.ranking().page(None, 3)
     assert [hit.key for hit in page.hits] == searched.naive()[:3]
     assert len(set(searched.loaded)) == len(searched.loaded) < 30
+
+
+def test_of_many_clips_with_the_same_pose_only_the_first_are_loaded() -> None:
+    clips = {f"c{number:02d}": walking(1.0).astype(np.float32) for number in range(60)}
+    searched = _Searched(clips, pose_vectors(clips["c00"][[12]])[0], MatchesPerClip.BEST)
+    page = searched.ranking().page(None, 5)
+    assert [hit.key for hit in page.hits] == searched.naive()[:5]
+    assert page.more
+    assert len(searched.loaded) < 15
 
 
 def test_a_pose_finds_its_own_frame_at_distance_zero_also_when_turned_and_moved() -> None:

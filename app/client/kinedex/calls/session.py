@@ -19,11 +19,11 @@ def get_session() -> Call[Session]:
 
 
 def sign_in(key: str) -> Call[Session]:
-    """Sign in: the answer sets a cookie that stands for the key until it is signed out, the service
-    restarts, the key expires, or 12 hours pass without a call. Only pages of this service can
-    use it. After too many wrong keys from one address, the answer is 429 for a while.
+    """Sign in: the answer sets a cookie that stands for the key.
 
-    Where no keys are needed, send an empty key: the answer is that of `GET`.
+    It does so until it is signed out, the key expires, or 12 hours pass without a call. Only
+    pages of this service can use it. After too many wrong keys from one address, the answer is
+    429 for a while. Where no keys are needed, send an empty key: the answer is that of `GET`.
 
     key: An API key.
     """

@@ -20,6 +20,8 @@ class Alive(Record):
 class Ready(Record):
     """The index is loaded, and searches are answered.
 
+    is_warm: Whether the first search of each kind is as fast as later ones. Until then, it also
+    loads an index or a model.
     warnings: What is damaged although every call can be answered, such as stored files:
     `kinedex doctor --mend` mends it.
     """
@@ -27,4 +29,5 @@ class Ready(Record):
     status: Literal["ready"]
     library_version: int
     clips: int
+    is_warm: bool
     warnings: list[ProblemPlace]
