@@ -41,14 +41,14 @@ def neighbor_radii(distances: FloatArray, neighbors: int) -> FloatArray:
 def diffused_closeness(
     distances: FloatArray, radii: FloatArray, damping: float = DAMPING
 ) -> FloatArray:
-    """(n,) the closeness of each point to the first point, 0..1.
+    """(n, n) the closeness of each point to each other point, 0..1.
 
-    The first point has closeness 1 to itself. Points that no path reaches have closeness 0.
+    A point has closeness 1 to itself. Points that no path connects have closeness 0.
     distances: (n, n) symmetric, zeros on the diagonal. radii: (n,) in the same unit, as from
     `neighbor_radii`. damping: 0 to less than 1, the share of a walk that goes on at each step.
 
     K = (I - damping D^-1/2 W D^-1/2)^-1 is positive definite, so it is a kernel. The result is
-    its cosine K_0i / sqrt(K_00 K_ii). The cosine gives no advantage to points with many edges.
+    its cosine K_ij / sqrt(K_ii K_jj). The cosine gives no advantage to points with many edges.
     """
     weights = _edges(distances, radii)
     degrees = np.sqrt(weights.sum(axis=1) + DEGREE_OFFSET)
@@ -58,8 +58,8 @@ def diffused_closeness(
     # SciPy has an inverse for symmetric matrices, but importing it takes a command longer than
     # the whole search, and this inverse of a few hundred rows takes a millisecond.
     kernel = np.linalg.inv(weights)
-    first, own = kernel[0], np.diagonal(kernel)
-    return np.asarray(np.clip(first / np.sqrt(own[0] * own), 0.0, 1.0))
+    own = np.sqrt(np.diagonal(kernel))
+    return np.asarray(np.clip(kernel / own / own[:, None], 0.0, 1.0))
 
 
 def _edges(distances: FloatArray, radii: FloatArray) -> FloatArray:

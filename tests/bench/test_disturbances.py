@@ -5,7 +5,8 @@ Stored clips are disturbed (tests/bench/disturbed_clips.py) and asked for again,
 stay in the library. The original should come first. RIDGE of the motion vector, the smoothing and
 the limits of idleness were chosen on these clips, so their rows are no result on new clips.
 What finds other tempos, cuts and repetitions was chosen on 70 other clips of three sources, and the
-weights of warping, windows and containment on 56 others.
+weights of warping, windows and containment on 56 others. What recognizes the same recording was
+fitted on 84 others, with each original in the library and without it.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ FIGURES = Section(
     "disturbances",
     "Clips that the world has disturbed",
     trials="40 clips of dataset 2, the same for each row; intervals are Wilson's, 95 %",
-    chance=".002 for the original first: 489 clips",
+    chance=".002 for the original first, .08 for the task of the nearest other: 496 clips",
 )
 
 pytestmark = pytest.mark.bench
@@ -42,6 +43,8 @@ FLOORS = {
     "repeated": 0.9,
 }
 """Smallest share of originals that come first by the method fused."""
+TOLERANCE = 0.01
+"""By as much may a part of `fused` be better than `fused`. One query more is .025."""
 
 
 def test_search() -> None:
@@ -53,14 +56,15 @@ def test_search() -> None:
     FIGURES.print(f"{'search':24}{'':8}{'original first':26}{'1-NN':>8}{'P@20':>8}{'MAP':>8}")
     for name, disturb in DISTURBANCES.items():
         found = [_ranked(library, indexed, i, disturb) for i in asked]
+        reached = {method: np.mean([one[method] for one in found], axis=0) for method in METHODS}
         for method in METHODS:
             rows = [one[method] for one in found]
             first = [bool(row[0]) for row in rows]
-            others = np.mean([row[1:] for row in rows], axis=0)
-            figures = "".join(f"{figure:8.3f}" for figure in others)
+            figures = "".join(f"{figure:8.3f}" for figure in reached[method][1:])
             FIGURES.print(f"{name:24}{method:8}{share(first):26}{figures}")
             if method is Method.FUSED:
                 assert np.mean(first) >= FLOORS.get(name, 0.0), name
+            assert (reached[Method.FUSED] >= reached[method] - TOLERANCE).all(), (name, method)
     FIGURES.print()
 
 

@@ -129,10 +129,16 @@ class _Table:
 
 
 def _with_midpoints(sequence: FloatArray) -> FloatArray:
-    """(2 n - 1, d) the frames of `sequence` (n, d), and the points halfway between them."""
+    """(2 n - 1, d) the frames of `sequence` (n, d), and the points halfway between them.
+
+    These are on the cubic curve through four frames: a straight line cuts the corners of a run,
+    whose arms and legs turn back within two frames. Beyond the ends, the motion goes straight on.
+    """
     points = np.repeat(sequence, 2, axis=0)[:-1]
-    points[1::2] += sequence[1:]
-    points[1::2] /= 2
+    if len(sequence) > 1:
+        before, after = 2 * sequence[:1] - sequence[1:2], 2 * sequence[-1:] - sequence[-2:-1]
+        wide = np.concatenate([before, sequence, after])
+        points[1::2] = (9 * (wide[1:-2] + wide[2:-1]) - wide[:-3] - wide[3:]) / 16
     return points
 
 

@@ -2,7 +2,8 @@
 
 The distance of the vectors is that of the motions as they are, or at a common pace if they are
 nearer there. Motions of different lengths may be nearer by windows of one second. A clip of which
-one is a part of the other is nearer, see `containment`.
+one is a part of the other is nearer, see `containment`. If one clip has the recording of the query,
+it speaks for the query, see `same_recording`.
 
 The vectors of a shortlist are whitened by the scatter of neighbors: a style counts less in the
 distance, since near clips differ in it (`app.numerics.neighbor_whitening`).
@@ -74,6 +75,35 @@ MAX_DETOUR = 5.0
 
 
 @dataclass(frozen=True, slots=True)
+class Neighborhood:
+    """A query and n clips, and how far each is from each other. The query is point 0.
+
+    between: (n + 1, n + 1) distances of the whitened vectors; detours: (n + 1, n + 1) the largest
+    number that the graph adds to each distance.
+    """
+
+    between: FloatArray
+    detours: FloatArray
+
+    @classmethod
+    def of(cls, query: FloatArray, vectors: FloatArray) -> Neighborhood:
+        """The motion vectors (d,) of a query and (n, d) of clips."""
+        points = np.vstack([query, vectors]).astype(np.float64)
+        alike = round(ALIKE * len(points) ** 0.5)
+        between = _distances(whitened(points, _distances(points), alike))
+        radii = neighbor_radii(between, max(1, round(NEIGHBORS * len(between) ** 0.5)))
+        closeness = diffused_closeness(between, radii)
+        # The logarithm makes the closeness, 1..0, a length: 0 for itself, larger for far points.
+        far = -np.log((closeness + MIN_CLOSENESS) / (1.0 + MIN_CLOSENESS))
+        return cls(between, float(np.median(radii)) * far)
+
+    def seen_from(self, point: int) -> FusedDistance:
+        """The fused distances of the n clips to a point: to the query, or to a clip."""
+        near = self.between[point, 1:]
+        return FusedDistance(near, self.detours[point, 1:], np.ones(len(near)))
+
+
+@dataclass(frozen=True, slots=True)
 class FusedDistance:
     """The part of the fused distance that needs only vectors, which is cheaper than warping.
 
@@ -84,20 +114,6 @@ class FusedDistance:
     near: FloatArray
     far: FloatArray
     shares: FloatArray
-
-    @classmethod
-    def of(cls, query: FloatArray, vectors: FloatArray) -> FusedDistance:
-        """The distances of motion vectors (n, d) to a query (d,)."""
-        if not len(vectors):  # a graph needs two points
-            return cls(np.zeros(0), np.zeros(0), np.zeros(0))
-        points = np.vstack([query, vectors]).astype(np.float64)
-        alike = round(ALIKE * len(points) ** 0.5)
-        between = _distances(whitened(points, _distances(points), alike))
-        radii = neighbor_radii(between, max(1, round(NEIGHBORS * len(between) ** 0.5)))
-        closeness = diffused_closeness(between, radii)[1:]
-        # The logarithm makes the closeness, 1..0, a length: 0 for the query, larger for far clips.
-        far = -np.log((closeness + MIN_CLOSENESS) / (1.0 + MIN_CLOSENESS))
-        return cls(between[0, 1:], float(np.median(radii)) * far, np.ones(len(vectors)))
 
     def nearer(self, paced: FloatArray, windows: FloatArray) -> FusedDistance:
         """The same distances, but small also for clips of another tempo or length.

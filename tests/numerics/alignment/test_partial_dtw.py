@@ -14,10 +14,12 @@ from app.numerics.arrays import FloatArray
 
 def naive_inside(whole: FloatArray, other: FloatArray) -> float:
     """The slow twin: each frame of `whole` is matched, the partner never goes back."""
-    middles = (other[1:] + other[:-1]) / 2
     points = [*other[:1]]
-    for middle, frame in zip(middles, other[1:], strict=True):
-        points += [middle, frame]
+    for left in range(len(other) - 1):
+        before = other[left - 1] if left else 2 * other[0] - other[1]
+        after = other[left + 2] if left + 2 < len(other) else 2 * other[-1] - other[-2]
+        cubic = np.polyfit([-1, 0, 1, 2], [before, other[left], other[left + 1], after], 3)
+        points += [0.5 ** np.arange(3, -1, -1) @ cubic, other[left + 1]]
     cost = np.linalg.norm(whole[:, None] - np.array(points), axis=2)
 
     def cheapest(i: int, j: int) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 
 from app.analysis.analyze import describe_for_search
 from app.motion.motion import Motion
-from app.search.example.containment import containment_distances
+from app.search.example.containment import containment
 from app.search.example.distances import ACTIVE, FEATURES
 from app.search.example.fusion import CONTAINED
 from tests.bodies import motion_of, standing, walking, waving
@@ -38,7 +38,7 @@ def test_tempo_and_crops_are_near_and_other_motions_far() -> None:
         return {one: stored[one][array] for one in ids if one in stored}
 
     asked = [*stored, "deleted"]
-    found = dict(zip(asked, containment_distances(stored["same"], asked, load), strict=True))
+    found = dict(zip(asked, containment(stored["same"], asked, load).posed, strict=True))
     assert found["same"] == 0.0
     assert max(found[name] for name in ("fast", "slow", "crop")) < CONTAINED / 2
     assert min(found[name] for name in ("wave", "rest")) > CONTAINED
@@ -53,7 +53,29 @@ def test_a_limit_spares_only_distances_from_it_on() -> None:
     def load(ids: list[str], array: str) -> dict[str, np.ndarray]:
         return {one: stored[one][array] for one in ids}
 
-    every = containment_distances(stored["1"], list(stored), load)
-    limited = containment_distances(stored["1"], list(stored), load, CONTAINED)
+    every = containment(stored["1"], list(stored), load).posed
+    limited = containment(stored["1"], list(stored), load, CONTAINED).posed
     assert limited[:2].tolist() == every[:2].tolist()
     assert limited[2] == np.inf > every[2] > CONTAINED
+
+
+def test_another_skeleton_moves_all_poses_and_is_still_the_same_recording() -> None:
+    walk = motion_of(walking())
+    offsets = 0.12 * np.random.default_rng(3).normal(size=(1, walk.positions.shape[1], 3))
+    motions = {
+        "same": walk,
+        "other skeleton": replace(walk, positions=(walk.positions + offsets).astype(np.float32)),
+        "wave": motion_of(waving()),
+    }
+    stored = {name: _described(motion) for name, motion in motions.items()}
+
+    def load(ids: list[str], array: str) -> dict[str, np.ndarray]:
+        return {one: stored[one][array] for one in ids}
+
+    found = containment(stored["same"], list(stored), load)
+    posed, moved = (
+        dict(zip(stored, one.tolist(), strict=True)) for one in (found.posed, found.moved)
+    )
+    assert moved["other skeleton"] < posed["other skeleton"] / 2
+    assert moved["other skeleton"] < moved["wave"] / 2
+    assert found.of_recordings.tolist() == np.minimum(found.posed, found.moved).tolist()

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.search.example.fusion import DTW_WEIGHT, MAX_DETOUR, FusedDistance
+from app.search.example.fusion import DTW_WEIGHT, MAX_DETOUR, Neighborhood
 from tests.search.fused import fused_distances
 
 
@@ -72,7 +72,7 @@ def test_zero_clips_and_one_clip_are_ranked() -> None:
 def test_without_warping_it_is_a_lower_bound_and_rows_are_independent(seed: int) -> None:
     rng = np.random.default_rng(seed)
     query, vectors, warped = rng.normal(size=8), rng.normal(size=(40, 8)), rng.uniform(size=40)
-    known, every = FusedDistance.of(query, vectors), np.arange(40)
+    known, every = Neighborhood.of(query, vectors).seen_from(0), np.arange(40)
     found = known.distances(every, warped)
     assert (known.distances(every, np.zeros(40)) <= found).all()
     some = rng.permutation(40)[:7]
@@ -87,7 +87,7 @@ def test_at_any_tempo_distances_only_fall_and_bounds_stay_bounds(seed: int) -> N
     paced = np.where(rng.uniform(size=40) < 0.2, np.inf, rng.uniform(0, 4, size=40))
     windows = np.where(rng.uniform(size=40) < 0.2, np.inf, rng.uniform(0.5, 4, size=40))
     contained = np.where(rng.uniform(size=40) < 0.5, np.inf, rng.uniform(size=40))
-    timed, every = FusedDistance.of(query, vectors), np.arange(40)
+    timed, every = Neighborhood.of(query, vectors).seen_from(0), np.arange(40)
     known = timed.nearer(paced, windows).contained(contained)
     found = known.distances(every, warped)
     assert (known.distances(every, np.zeros(40)) <= found).all()
