@@ -99,6 +99,7 @@ PairId = Annotated[str, _id("a pair", "PAIR_ID")]
 ModelId = Annotated[str, _id("a recognizer", "MODEL_ID")]
 SignatureModelId = Annotated[str, _id("a multilinear model", "SIGNATURE_MODEL_ID")]
 EvaluationId = Annotated[str, _id("an evaluation", "EVALUATION_ID")]
+GroupId = Annotated[str, _id("a group of near-duplicates", "GROUP_ID")]
 WebhookId = Annotated[str, _id("a webhook", "WEBHOOK_ID")]
 
 

@@ -47,6 +47,7 @@ def test_arrays_are_finite_with_documented_shapes_and_types(body: FloatArray) ->
         "msv_lambda": (1,), "msv_rho": (13,), "msv_epsilon": (n,),
         "msv_convergence": (len(arrays["msv_convergence"]), 2),
         "pose_cover": (len(arrays["pose_cover"]), 38),
+        "moments": (len(arrays["moments"]), 33),
         "motion_sample": (1250,), "angle_sample": (642,), "motion_shape": (1378,),
         "symbol_statistics": (131,), "movement_signs": (44,), "symbol_means": (states, 26),
         "symbol_variances": (states, 26), "symbol_transitions": (states, states),
@@ -78,7 +79,7 @@ def test_a_query_has_the_same_arrays_as_a_stored_clip() -> None:
     query = describe_for_search(motion_of(BODIES["walk"])).arrays
     assert set(stored) - set(query) == {
         "keypose_frames", "pose_cover", "symbol_means", "symbol_variances", "symbol_transitions",
-        "keypose_thresholds", *SEGMENT_TYPES, *BEAT_ARRAYS,
+        "keypose_thresholds", "moments", *SEGMENT_TYPES, *BEAT_ARRAYS,
     }  # fmt: skip
     assert all(stored[name].tobytes() == query[name].tobytes() for name in query)
 

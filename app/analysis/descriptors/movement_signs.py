@@ -52,6 +52,8 @@ MAX_TURN = 3.0
 """Radians: limit of the sign `turn_to_left`."""
 CYCLE = 0.3, 3.0
 """Seconds: bounds of a cycle."""
+SHORT = 0.3
+"""Seconds: cycle times below it differ little."""
 MIN_OVERLAP = 3
 """A cycle is compared with at least one part in this of the clip."""
 SLOW = 0.1
@@ -66,6 +68,12 @@ def movement_signs(track: BodyTrack) -> FloatArray:
     parts = (_turning(track), _travel(track), _height(track), _rhythm(track), _limbs(track, speeds))
     means = _log(speeds[:, [SUN_ROLES.index(role) for role in SPEED_ROLES]].mean(axis=0))
     return np.concatenate([*parts, means])
+
+
+def cycle_of(signs: FloatArray) -> tuple[float, float]:
+    """How well a cycle repeats (0..1), and its time in seconds, from `signs` (44,)."""
+    likeness, lag = signs[[SIGNS.index("cycle"), SIGNS.index("cycle_time")]]
+    return float(likeness), float(np.exp(lag)) - SHORT
 
 
 def _turning(track: BodyTrack) -> FloatArray:
@@ -121,7 +129,7 @@ def _rhythm(track: BodyTrack) -> FloatArray:
     variances = np.maximum(np.linalg.eigvalsh(poses.T @ poses), 0.0)
     shares = variances / max(float(variances.sum()), 1e-12)
     entropy = -(shares * np.log(np.maximum(shares, 1e-12))).sum()
-    return np.array([likeness, np.log(0.3 + lag), entropy, np.log(track.duration)])
+    return np.array([likeness, np.log(SHORT + lag), entropy, np.log(track.duration)])
 
 
 def _cycle(poses: FloatArray, rate: float) -> tuple[float, float]:

@@ -9,6 +9,7 @@ from typing import Self
 from app.analysis.descriptors.windows import WIDTH, WINDOW_SCALES
 from app.analysis.segments.segments import SEGMENT_SPANS, SEGMENT_VECTORS, SEGMENT_WIDTH
 from app.config import Settings
+from app.search.duplicates.candidates import MOMENTS
 from app.search.index.array_cache import ArrayCache
 from app.search.index.model_rows import ModelRows
 from app.search.index.projected_index import ProjectedIndex
@@ -35,7 +36,8 @@ class Library:
     again. word_scores, symbol_points, cca_points: the outputs of the word models for the indexed
     clips. pool: analyzes uploaded queries; a worker has its own pool. windows: the windows of all
     clips, by the name of their scale; segments: the segments of all clips; poses: the pose covers
-    of all clips; the first search that needs paced or one of these three loads it. metrics: the
+    of all clips; moments: their moments, for near-duplicates; the first search that needs paced or
+    one of these four loads it. metrics: the
     clips' coordinates in each learned metric.
     """
 
@@ -53,6 +55,7 @@ class Library:
     windows: Mapping[str, VectorIndex]
     segments: VectorIndex
     poses: VectorIndex
+    moments: VectorIndex
     metrics: Mapping[ModelKind, ProjectedIndex]
 
     @classmethod
@@ -89,6 +92,7 @@ class Library:
                 layout=parts_layout(SEGMENT_VECTORS, SEGMENT_SPANS, SEGMENT_WIDTH)
             ),
             poses=VectorIndex(layout=POSES),
+            moments=VectorIndex(layout=MOMENTS),
             metrics={kind: ProjectedIndex(index) for kind in METRICS},
         )
 
