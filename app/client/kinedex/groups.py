@@ -6,6 +6,7 @@ from kinedex.calls import alignment as calls_alignment
 from kinedex.calls import audit as calls_audit
 from kinedex.calls import clip_views as calls_clip_views
 from kinedex.calls import clips as calls_clips
+from kinedex.calls import curation as calls_curation
 from kinedex.calls import evaluations as calls_evaluations
 from kinedex.calls import export as calls_export
 from kinedex.calls import health as calls_health
@@ -14,6 +15,7 @@ from kinedex.calls import jobs as calls_jobs
 from kinedex.calls import keyposes as calls_keyposes
 from kinedex.calls import labels as calls_labels
 from kinedex.calls import low_dimensional as calls_low_dimensional
+from kinedex.calls import measures as calls_measures
 from kinedex.calls import models as calls_models
 from kinedex.calls import poses as calls_poses
 from kinedex.calls import recognize as calls_recognize
@@ -117,6 +119,17 @@ class Labels(Group[SenderType]):
     manifest = CallMethod(calls_labels.get_manifest)
 
 
+class Curation(Group[SenderType]):
+    """Measures, near-duplicates and outliers: what keeps a library clean."""
+
+    measures = CallMethod(calls_measures.list_measures)
+    duplicates = ListMethod(calls_curation.list_duplicates)
+    dismiss_duplicates = CallMethod(calls_curation.dismiss_duplicates)
+    outliers = CallMethod(calls_curation.list_outliers)
+    accept_outlier = CallMethod(calls_curation.accept_outlier)
+    dismiss_outlier = CallMethod(calls_curation.dismiss_outlier)
+
+
 class Studies(Group[SenderType]):
     """Blind studies that compare low-dimensional motions."""
 
@@ -168,6 +181,7 @@ class RootBase(Group[SenderType]):
         self.search = Search(sender)
         self.models = Models(sender)
         self.labels = Labels(sender)
+        self.curation = Curation(sender)
         self.studies = Studies(sender)
         self.service = Service(sender)
         self.webhooks = Webhooks(sender)

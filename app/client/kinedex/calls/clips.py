@@ -9,6 +9,8 @@ from kinedex.call import Call, nothing, path_of, read_bytes, record
 from kinedex.sent import UNSET, FileInput, Progress, Unset, corrections, given
 
 if TYPE_CHECKING:
+    from kinedex.types.measures import MeasuredClip
+
     from kinedex.types.bodies import Filter
     from kinedex.types.choices import ClipState
     from kinedex.types.clips import Clip, ClipCreated, ClipList
@@ -65,6 +67,62 @@ def list_clips(
         "-energy",
         "tempo",
         "-tempo",
+        "foot_skate",
+        "-foot_skate",
+        "ground_penetration",
+        "-ground_penetration",
+        "floating",
+        "-floating",
+        "jitter",
+        "-jitter",
+        "joint_limits",
+        "-joint_limits",
+        "self_contact",
+        "-self_contact",
+        "airborne_time",
+        "-airborne_time",
+        "unsupported_time",
+        "-unsupported_time",
+        "turn",
+        "-turn",
+        "net_turn",
+        "-net_turn",
+        "dominance",
+        "-dominance",
+        "cyclicity",
+        "-cyclicity",
+        "cycle_time",
+        "-cycle_time",
+        "loop_gap",
+        "-loop_gap",
+        "loop_start",
+        "-loop_start",
+        "loop_end",
+        "-loop_end",
+        "start_speed",
+        "-start_speed",
+        "end_speed",
+        "-end_speed",
+        "range_trunk",
+        "-range_trunk",
+        "range_neck",
+        "-range_neck",
+        "range_left_shoulder",
+        "-range_left_shoulder",
+        "range_right_shoulder",
+        "-range_right_shoulder",
+        "range_left_elbow",
+        "-range_left_elbow",
+        "range_right_elbow",
+        "-range_right_elbow",
+        "range_left_hip",
+        "-range_left_hip",
+        "range_right_hip",
+        "-range_right_hip",
+        "range_left_knee",
+        "-range_left_knee",
+        "range_right_knee",
+        "-range_right_knee",
         "person",
         "-person",
         "task",
@@ -80,7 +138,8 @@ def list_clips(
 
     `meta.KEY=VALUE` filters by metadata, `not_meta.KEY=VALUE` leaves clips with that value out,
     and `meta.KEY.min=30`, `meta.KEY.max=40` filter by a number; `GET /v1/metadata` lists the
-    keys.
+    keys. `measure.NAME.min` and `measure.NAME.max` are bounds of a measure of `GET
+    /v1/measures`.
 
     not_person: Clips of none of these persons.
     not_task: Clips of none of these tasks.
@@ -253,20 +312,20 @@ def create_clip(
     )
 
 
-def get_clip(clip_id: str, *, fields: Sequence[str] | None = None) -> Call[Clip]:
-    """One clip.
+def get_clip(clip_id: str, *, fields: Sequence[str] | None = None) -> Call[MeasuredClip]:
+    """One clip, with its measures beside those of the library.
 
     fields: Members of each item, with commas between them, as in `id,name`; of the clip of a hit
         as in `score,clip.id`. Default: all. Other members are then left out, even if the schema
         of the answer requires them.
     """
-    from kinedex.types.clips import Clip
+    from kinedex.types.measures import MeasuredClip
 
     return Call(
         "get_clip",
         "GET",
         path_of("/v1/clips/{clip_id}", clip_id=clip_id),
-        record(Clip),
+        record(MeasuredClip),
         query=given(fields=fields),
     )
 

@@ -11,6 +11,8 @@ class Filter(TypedDict):
 
     `meta.KEY=VALUE` filters by the metadata of the clips, `not_meta.KEY=VALUE` leaves clips with
     that value out, and `meta.KEY.min=30`, `meta.KEY.max=40` filter by a number.
+    `measure.NAME.min` and `measure.NAME.max` are bounds of a measure of `GET /v1/measures`, as in
+    `measure.foot_skate.max=0.1`.
 
     not_person: Clips of none of these persons.
     not_task: Clips of none of these tasks.
