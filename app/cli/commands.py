@@ -53,6 +53,11 @@ COMMANDS = {
         "Synthesize a motion that a person never recorded, as a BVH file, and report its quality.",
     ),
     "clips": CommandEntry("app.cli.clips", "program", "List, show, label and delete stored clips."),
+    "duplicates": CommandEntry(
+        "app.cli.duplicates",
+        "duplicates",
+        "List groups of near-duplicates, each with the clip to keep.",
+    ),
     "jobs": CommandEntry(
         "app.cli.jobs", "program", "List, show and cancel work in the background."
     ),

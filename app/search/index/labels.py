@@ -19,6 +19,7 @@ from app.search.index.metadata import MetadataColumns
 from app.search.ranking.ranking import IdArray
 from app.store.clips.filter import ClipFilter, is_in_folder
 from app.store.clips.index_feed import IndexedClip
+from app.store.clips.license_policy import allowed_licenses
 from app.store.clips.measures import FOUND, QUALITY
 from app.store.clips.visibility import visible_source
 
@@ -127,7 +128,8 @@ class LabelView:
     labels: Labels
 
     def mask(self, clip_filter: ClipFilter, exclude: Iterable[str] = ()) -> BoolArray:
-        """(n,) whether each clip passes a filter, is visible (`visibility`) and is not excluded.
+        """(n,) whether each clip passes a filter, is visible (`visibility`), has an allowed
+        license (`license_policy`) and is not excluded.
 
         The filter's state and name are ignored: every clip here is ready.
         """
@@ -145,6 +147,8 @@ class LabelView:
         source = visible_source()
         if source is not None:
             mask &= _any_of(self.coded["source"], self.labels.named["source"].codes([source]))
+        if licenses := allowed_licenses():
+            mask &= _any_of(self.coded["license"], self.labels.named["license"].codes(licenses))
         for clip_id in exclude:
             mask[self._numbers_of(clip_id)] = False
         return mask

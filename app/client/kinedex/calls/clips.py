@@ -9,11 +9,10 @@ from kinedex.call import Call, nothing, path_of, read_bytes, record
 from kinedex.sent import UNSET, FileInput, Progress, Unset, corrections, given
 
 if TYPE_CHECKING:
-    from kinedex.types.measures import MeasuredClip
-
     from kinedex.types.bodies import Filter
     from kinedex.types.choices import ClipState
     from kinedex.types.clips import Clip, ClipCreated, ClipList
+    from kinedex.types.measures import MeasuredClip
 
 
 def list_clips(

@@ -9,11 +9,10 @@ from kinedex.call import Call, nothing, path_of, record
 from kinedex.sent import given
 
 if TYPE_CHECKING:
-    from kinedex.types.curation import DuplicateGroups, OutlierList
-
     from kinedex.types.bodies import Filter
     from kinedex.types.choices import OutlierReason, PairKind
     from kinedex.types.clips import Clip
+    from kinedex.types.curation import DuplicateGroups, OutlierList
 
 
 def list_duplicates(

@@ -9,9 +9,8 @@ from kinedex.call import Call, record
 from kinedex.sent import given
 
 if TYPE_CHECKING:
-    from kinedex.types.measures import MeasureList
-
     from kinedex.types.bodies import Filter
+    from kinedex.types.measures import MeasureList
 
 
 def list_measures(
