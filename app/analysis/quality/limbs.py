@@ -24,7 +24,7 @@ EXTREMES = (0.05, 0.95)
 CONTACT_RATE = 10.0
 """Hz at which limbs are compared: a touch lasts longer."""
 
-POINTS = 4
+POINTS = 6
 """Points on each limb whose distances are compared."""
 
 REST = 1e-3

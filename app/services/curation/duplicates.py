@@ -14,6 +14,7 @@ from app.store.clips import repository as clips
 from app.store.clips.record import ClipRecord
 from app.store.curation import pairs as stored
 from app.store.curation.pairs import DuplicatePair
+from app.store.database.engine import Tx
 from app.store.database.paging import Page, Position, read_cursor, write_cursor
 from app.store.database.totals import Total
 
@@ -74,6 +75,13 @@ def list_groups(
     items = tuple(_group(ids, records, _pairs_of(ids, pairs)) for ids in shown)
     page = Page(items, next_cursor).counted(Total(len(groups), is_exact=True))
     return Duplicates(page, pending)
+
+
+def example_id(tx: Tx) -> str | None:
+    """The id of a group, None without one."""
+    pairs = stored.open_pairs(tx, PairKind.SIMILAR, 0.0, limit=1)
+    # the first pair has the smallest id of all, which names its group
+    return PREFIX + pairs[0].clip_id.removeprefix(CLIP_PREFIX) if pairs else None
 
 
 def dismiss(lib: Library, group_id: str, *, threshold: float = 0.0) -> None:

@@ -100,12 +100,15 @@ def put(tx: Tx, versions: Mapping[str, int], pairs: Iterable[DuplicatePair]) -> 
         tx.execute(insert(duplicate_checks), checks)
 
 
-def open_pairs(tx: Tx, similar: str, threshold: float) -> list[DuplicatePair]:
+def open_pairs(
+    tx: Tx, similar: str, threshold: float, limit: int | None = None
+) -> list[DuplicatePair]:
     """The pairs that nobody dismissed: of one take, and of kind `similar` within a distance."""
     column = duplicate_pairs.c
     is_shown = or_(column.kind != similar, column.distance <= threshold)
     query = select(*_COLUMNS).where(column.dismissed_at.is_(None), is_shown)
-    rows = tx.execute(query.order_by(column.clip_id, column.other_id)).mappings()
+    ordered = query.order_by(column.clip_id, column.other_id).limit(limit)
+    rows = tx.execute(ordered).mappings()
     return [DuplicatePair(**row) for row in rows]
 
 
