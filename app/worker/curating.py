@@ -21,6 +21,7 @@ class Curating:
 
     def __init__(self, lib: Library) -> None:
         self._lib = lib
+        self._settled = -1
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._compare, name="curate", daemon=True)
 
@@ -37,10 +38,19 @@ class Curating:
     def _compare(self) -> None:
         while not self._stop.wait(CHECK_INTERVAL_S):
             try:
-                if comparison.is_due(self._lib):
-                    self._compare_some()
+                self._compare_if_due()
             except KinedexError:
                 _log.exception("clips could not be compared; trying again")
+
+    def _compare_if_due(self) -> None:
+        version = comparison.unchanged_version(self._lib)
+        if version == self._settled:
+            return
+        # Looking for clips that wait reads all of them, so it is done once for each version.
+        if not comparison.is_any_waiting(self._lib):
+            self._settled = version
+        elif not comparison.is_analyzing(self._lib):
+            self._compare_some()
 
     def _compare_some(self) -> None:
         for _ in comparison.compare_pending(self._lib):

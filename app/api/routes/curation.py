@@ -8,7 +8,7 @@ from fastapi import APIRouter, Depends, Query
 
 from app.api.bodies import require_json
 from app.api.deps import Lib, reads, writes
-from app.api.guard.admission import changes, quick
+from app.api.guard.admission import changes, heavy, quick
 from app.api.openapi import ClipId, GroupId, refusals
 from app.api.schemas.clips import Clip
 from app.api.schemas.curation import (
@@ -67,7 +67,7 @@ def dismiss_duplicates(
     duplicates.dismiss(lib, group_id, threshold=query.threshold)
 
 
-@router.get("/outliers", dependencies=[reads, quick], responses=refusals())
+@router.get("/outliers", dependencies=[reads, heavy], responses=refusals())
 def list_outliers(lib: Lib, query: Annotated[OutlierQuery, Query()]) -> OutlierList:
     """Clips that differ from the others with their task: wrong labels, or faults.
 

@@ -47,6 +47,9 @@ SMOOTHING, EDGE = 1.5, 2
 """Frames (standard deviation) of a further smoothing: noise has no place in a comparison, and what
 differs between takes is slow. Frames at each end, which it changes, are left out."""
 
+LAG, MIN_LAGS = 5, 3
+"""Frames after which noise is forgotten, and lags of the shortest overlap whose drift is known."""
+
 STILL = 0.02
 """Body lengths that a joint of a moving body leaves its mean at least. With less, the noise of two
 clips at rest would count as a difference of their movement."""
@@ -60,13 +63,15 @@ class Overlay:
     length of the overlap. distance: what differs, as a share of what moves: the root of the squared
     differences over the squared movements of both clips, 0 for the same movement and about 1 for
     unrelated ones; the mean poses of the overlap do not count. offset: the difference of the mean
-    poses, body lengths.
+    poses, body lengths. drift: how much of the difference is still there LAG later (its
+    autocorrelation): near 0 for noise, near 1 if the bodies move differently or unknown.
     """
 
     shift: float
     seconds: float
     distance: float
     offset: float
+    drift: float = 1.0
 
 
 def mirrored_features(features: FloatArray) -> FloatArray:
@@ -98,7 +103,8 @@ def overlay(one: FloatArray, other: FloatArray) -> Overlay | None:
         return None
     distance, offset, frames = best
     frames += 2 * EDGE * is_long
-    return Overlay(shift / WARPING_RATE, frames / WARPING_RATE, distance, offset)
+    drift = _drift(x, y, shift)
+    return Overlay(shift / WARPING_RATE, frames / WARPING_RATE, distance, offset, drift)
 
 
 def _compared(features: FloatArray, *, is_long: bool) -> FloatArray:
@@ -145,20 +151,39 @@ def _relative(left: FloatArray, moved: FloatArray, frames: IntArray) -> FloatArr
     return np.asarray(np.sqrt(np.maximum(left, 0.0) / (np.maximum(moved, 0.0) + rest)))
 
 
+def _laid(x: FloatArray, y: FloatArray, shift: float) -> tuple[FloatArray, FloatArray]:
+    """The frames (f, 43) of both clips in their overlap at a shift in frames."""
+    first = max(0, int(np.ceil(shift)))
+    stop = min(len(x), int(np.floor(shift + len(y) - 1)) + 1)
+    if stop <= first:
+        return x[:0], y[:0]
+    return x[first:stop], sample_at(y, np.arange(first, stop) - shift)
+
+
+def _drift(x: FloatArray, y: FloatArray, shift: float) -> float:
+    """The drift of `Overlay`; 1 for an overlap that is too short to tell."""
+    a, b = _laid(x, y, shift)
+    if len(a) < MIN_LAGS * LAG:
+        return 1.0
+    left = a - b
+    left -= left.mean(axis=0)
+    same = np.square(left).sum()
+    later = (left[LAG:] * left[:-LAG]).sum() * len(left) / (len(left) - LAG)
+    return float(later / max(float(same), 1e-12))
+
+
 def _difference(
     x: FloatArray, y: FloatArray, shift: float, shortest: int
 ) -> tuple[float, float, int] | None:
     """Distance, offset and frames of the overlap at a shift in frames, see `Overlay`."""
-    first = max(0, int(np.ceil(shift)))
-    stop = min(len(x), int(np.floor(shift + len(y) - 1)) + 1)
-    if stop - first < shortest - 1:
+    a, b = _laid(x, y, shift)
+    frames = len(a)
+    if frames < shortest - 1:
         return None
-    a, b = x[first:stop], sample_at(y, np.arange(first, stop) - shift)
     means = a.mean(axis=0), b.mean(axis=0)
     gap = means[0] - means[1]
     offset = float(np.sqrt(np.square(gap[POSITIONS]).sum() / len(SUN_ROLES)))
     moved = np.square(a - means[0]).sum() + np.square(b - means[1]).sum()
     left = np.square(a - b - gap).sum()
-    frames = stop - first
     distance = float(_relative(left, moved, np.asarray(frames)))
     return distance, offset, frames

@@ -13,6 +13,7 @@ from app.search.duplicates.overlay import mirrored_features, overlay
 from app.search.index.rows import RowsView
 from app.services.library.library import Library
 from app.store.clips import arrays, partial
+from app.store.clips import versions as library
 from app.store.curation import pairs as stored
 from app.store.curation.pairs import DuplicatePair
 from app.store.jobs import repository as jobs
@@ -31,14 +32,24 @@ Pairs = dict[tuple[str, str], set[bool]]
 """Pairs of ids, the smaller first, each with the ways to compare it: mirrored, or as it is."""
 
 
-def is_due(lib: Library) -> bool:
-    """Whether clips wait for a comparison, and no clip waits for its analysis."""
+def unchanged_version(lib: Library) -> int:
+    """The version of the library: while it is the same, no other clip waits for a comparison."""
     with lib.store.read() as tx:
-        if not stored.pending(tx, 1):
-            return False
+        return library.version(tx)
+
+
+def is_any_waiting(lib: Library) -> bool:
+    """Whether clips wait for a comparison."""
+    with lib.store.read() as tx:
+        return bool(stored.pending(tx, 1))
+
+
+def is_analyzing(lib: Library) -> bool:
+    """Whether clips wait for their analysis, which goes first."""
+    with lib.store.read() as tx:
         states = (JobState.QUEUED, JobState.PROCESSING)
         open_ingests = (jobs.list_jobs(tx, kind=JobKind.INGEST, state=s, limit=1) for s in states)
-        return not any(page.items for page in open_ingests)
+        return any(page.items for page in open_ingests)
 
 
 def compare_pending(lib: Library, limit: int = CHUNK) -> Iterator[int]:
