@@ -37,12 +37,22 @@ EXACT = 0.01
 SAME_TIME = 0.15
 """Seconds by which lengths and starts of whole copies may differ."""
 
-WHOLE, OTHER_SKELETON, PART = 0.085, 0.2, 0.06
-"""Largest distances of a whole copy, of one with another skeleton, and of a cut one. A cut has more
-places at which it might fit by chance, so that it must fit better."""
+SAME = 0.044
+"""The largest distance of copies, whole or cut. Takes that an actor repeats reach .04."""
+
+NOISY, MAX_DRIFT = 0.075, 0.12
+"""The largest distance of a whole copy whose difference is noise, and the largest drift of noise.
+Takes of people differ slowly."""
+
+OTHER_SKELETON, MIN_OTHER, SHORT_OTHER = 0.2, 2.0, 0.1
+"""The largest distance of a whole copy with another skeleton; the seconds from which it holds, and
+the largest distance of shorter ones."""
 
 SAME_POSE, OTHER_POSE = 0.06, 0.15
 """Body lengths between the mean poses: of the same skeleton, and of the same take in another."""
+
+SAME_RATE = 0.01
+"""The share by which frame rates may differ."""
 
 PART_OVERLAP = 0.93
 """The share of the shorter clip that a cut overlaps."""
@@ -69,26 +79,38 @@ def kind_of(
 ) -> PairKind | None:
     """The kind of a pair from its best overlay; None if they are no near-duplicates."""
     is_whole = abs(one.duration - other.duration) <= SAME_TIME and abs(overlay.shift) <= SAME_TIME
-    if not _is_same_take(one, other, overlay, is_whole=is_whole):
+    is_same = _is_whole_copy(one, other, overlay) if is_whole else _is_part(one, other, overlay)
+    if not is_same:
         return None if overlay.distance > MAX_SIMILAR or is_mirrored else PairKind.SIMILAR
     if is_mirrored:
         return PairKind.MIRROR
     if not is_whole:
         return PairKind.CUT
-    if overlay.offset > SAME_POSE or (one.format, one.joints) != (other.format, other.joints):
+    if _differ(one, other):
         return PairKind.FORMAT
-    if abs(one.frame_rate - other.frame_rate) > 0.01 * one.frame_rate:
+    if abs(one.frame_rate - other.frame_rate) > SAME_RATE * one.frame_rate:
         return PairKind.RATE
     return PairKind.EXACT if overlay.distance <= EXACT else PairKind.COPY
 
 
-def _is_same_take(one: ClipFacts, other: ClipFacts, overlay: Overlay, *, is_whole: bool) -> bool:
-    if is_whole:
-        limit = WHOLE if overlay.offset <= SAME_POSE else OTHER_SKELETON
-        return overlay.distance <= limit and overlay.offset <= OTHER_POSE
+def _differ(one: ClipFacts, other: ClipFacts) -> bool:
+    """Whether format or skeleton differ."""
+    return (one.format, one.joints) != (other.format, other.joints)
+
+
+def _is_whole_copy(one: ClipFacts, other: ClipFacts, overlay: Overlay) -> bool:
+    if overlay.offset > SAME_POSE:
+        limit = OTHER_SKELETON if overlay.seconds >= MIN_OTHER else SHORT_OTHER
+        is_near = overlay.distance <= limit and overlay.offset <= OTHER_POSE
+        return _differ(one, other) and is_near
+    is_noise = abs(overlay.drift) <= MAX_DRIFT and overlay.distance <= NOISY
+    return overlay.distance <= SAME or is_noise
+
+
+def _is_part(one: ClipFacts, other: ClipFacts, overlay: Overlay) -> bool:
     shorter = min(one.duration, other.duration)
     return (
-        overlay.distance <= PART
+        overlay.distance <= SAME
         and overlay.offset <= SAME_POSE
         and overlay.seconds >= max(PART_OVERLAP * shorter, MIN_PART)
     )
