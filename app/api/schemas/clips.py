@@ -55,7 +55,7 @@ def _is_order(name: str) -> str:
 Sort = Annotated[
     str,
     AfterValidator(_is_order),
-    Field(json_schema_extra={"enum": [end + name for name in SORT_NAMES for end in ("", "-")]}),
+    Field(json_schema_extra={"pattern": f"^-?({'|'.join(SORT_NAMES)})$"}),
 ]
 Stack = Annotated[
     str,
