@@ -94,7 +94,7 @@ def dismiss(lib: Library, group_id: str, *, threshold: float = 0.0) -> None:
         pairs = stored.open_pairs(tx, PairKind.SIMILAR, threshold)
         chosen = next((ids for ids in _connected(pairs) if ids[0] == first), None)
         if chosen is None or not group_id.startswith(PREFIX):
-            places = [Place("path.group_id", "is the id of no group")]
+            places = [Place("group_id", "is the id of no group")]
             raise NotFound(f"There is no group with the id {group_id!r}", places=places)
         stored.dismiss(tx, _pairs_of(chosen, pairs))
 

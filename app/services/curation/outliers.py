@@ -123,7 +123,7 @@ def _outlier(lib: Library, clip: ClipRecord, reason: OutlierReason) -> LabelOutl
 
 
 def _no_outlier(clip_id: str) -> NotFound:
-    places = [Place("path.clip_id", "is the id of no outlier")]
+    places = [Place("clip_id", "is the id of no outlier")]
     return NotFound(f"The clip {clip_id} is no outlier within its task", places=places)
 
 
