@@ -3,47 +3,49 @@
 from __future__ import annotations
 
 import io
-import threading
+import json
 from pathlib import Path
 
-from app.config import Settings
+import pytest
+
 from app.demo import demo_clips
 from app.formats.npz.writer import write_npz
 from app.services.clips import catalogue as clips
 from app.services.curation import comparison
 from app.services.library.library import Library
 from app.services.library.stored_motion import load_motion
-from app.worker.loop import run_worker
-from tests.cli.conftest import Kinedex
+from tests.cli.in_process import running
+from tests.libraries import settings_for, upload, work
 
 
-def test_groups_are_listed_with_their_keeper(kinedex: Kinedex) -> None:
-    assert kinedex("duplicates", "--json").json() == {"items": []}
-    assert "No near-duplicates" in kinedex("duplicates").out
-    original, copy = _library_with_copy(kinedex.data_dir)
-    (group,) = kinedex("duplicates", "--json").json()["items"]
+def test_groups_are_listed_with_their_keeper(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lib = Library.open(settings_for(tmp_path))
+    run = running("duplicates", lib, tmp_path, monkeypatch)
+    assert "No near-duplicates" in run().output
+    original, copy = _with_copy(lib)
+    (group,) = json.loads(run("--json").output)["items"]
     assert {one["id"] for one in group["clips"]} == {original, copy}
     assert group["pairs"][0]["kind"] == "cut"
-    shown = kinedex("duplicates").out
+    shown = run().output
     assert group["id"] in shown
     assert next(line for line in shown.splitlines() if "keep" in line).split()[1] == original
-    rows = kinedex("duplicates", "--csv").out.splitlines()
+    rows = run("--csv").output.splitlines()
     assert rows[0].startswith("group,keeper,clip_id,other_id,kind,distance")
     assert rows[1].startswith(f"{group['id']},{original},")
+    lib.close()
 
 
-def _library_with_copy(data_dir: Path) -> tuple[str, str]:
-    lib = Library.open(Settings(data_dir=data_dir, analysis_processes=1))
+def _with_copy(lib: Library) -> tuple[str, str]:
     (walk,) = demo_clips(["ada"], ["walk"], takes=1)
-    original = clips.create_clip(lib, io.BytesIO(walk.content), "walk.bvh").clip.id
-    run_worker(lib.settings, threading.Event(), until=lambda _: True)
+    original = upload(lib, walk).clip.id
+    work(lib.settings)
     motion = load_motion(lib, clips.get_clip(lib, original))
-    content = write_npz(
-        motion.names, motion.parents, motion.positions[motion.frames // 4 :], motion.frame_rate
-    )
+    positions = motion.positions[motion.frames // 4 :]
+    content = write_npz(motion.names, motion.parents, positions, motion.frame_rate)
     copy = clips.create_clip(lib, io.BytesIO(content), "copy.npz").clip.id
-    run_worker(lib.settings, threading.Event(), until=lambda _: True)
+    work(lib.settings)
     for _ in comparison.compare_pending(lib):
         pass
-    lib.close()
     return original, copy
