@@ -315,6 +315,12 @@ class Forbidden(KinedexError):
     code = "forbidden"
 
 
+class LicenseNotAllowed(Forbidden):
+    """The policy on licenses does not allow to give this clip out."""
+
+    code = "license_not_allowed"
+
+
 class ConfigurationError(KinedexError):
     """The settings do not allow this."""
 

@@ -11,6 +11,7 @@ window_vectors_* (w, 125)
 float16 and window_spans_* (w, 2) seconds, for 1s, 2s and 4s; beat_times (b,) float64
 seconds, beat_facts (3,) float64 (see `rhythm`); keypose_frames (k,)
 int32, indices of the n frames; keypose_thresholds (2,) float64, the T1 and T2 that found them;
+moments (q, 33), the time in seconds and the vector of moments that copies of a take have too;
 pose_cover (p, 38), the frame, radius and vector of
 poses that represent all poses; segment_spans (s, 2) seconds, segment_vectors (s, 185)
 float16, segment_cycles (c, 3) int32. word_windows (w, 175) float16 and word_window_spans (w, 2)
@@ -32,6 +33,7 @@ from app.analysis.descriptors.active_part import active_span
 from app.analysis.descriptors.angle_sample import angle_sample
 from app.analysis.descriptors.common_pace import at_common_pace
 from app.analysis.descriptors.frame_features import features_at_10hz, frame_features
+from app.analysis.descriptors.moments import moments
 from app.analysis.descriptors.motion_sample import motion_sample
 from app.analysis.descriptors.motion_shape import motion_shape
 from app.analysis.descriptors.motion_vector import describe, motion_vector, narrow, wide
@@ -43,6 +45,7 @@ from app.analysis.descriptors.word_windows import word_window_arrays
 from app.analysis.energy.energy import energies
 from app.analysis.keyposes.keyposes import T1, T2, find_keyposes
 from app.analysis.measures import Measures, measure
+from app.analysis.quality.measure import Quality, measure_quality
 from app.analysis.rhythm.onsets import Onsets
 from app.analysis.rhythm.rhythm import NO_RHYTHM_INPUT, RhythmInput, find_rhythm, rhythm_arrays
 from app.analysis.segments.keypose_arrays import keypose_arrays
@@ -66,8 +69,8 @@ class Analysis:
     """A motion and its arrays by name (see the module).
 
     audio_offset: the time of the motion, in seconds, at which its audio recording begins; None
-    without a recording or if the time is unknown. cautions: doubts about the recording. measures:
-    None if only the arrays of a search were computed.
+    without a recording or if the time is unknown. cautions: doubts about the recording. measures,
+    quality: None if only the arrays of a search were computed.
     stage_seconds: how long each stage took, for the operator; it is not part of the result.
     """
 
@@ -76,6 +79,7 @@ class Analysis:
     audio_offset: float | None = None
     cautions: tuple[Caution, ...] = ()
     measures: Measures | None = None
+    quality: Quality | None = None
     stage_seconds: Mapping[str, float] = field(default_factory=dict, compare=False)
 
 
@@ -100,6 +104,7 @@ def analyze(
         parts = _Parts(smooth)
         arrays: dict[str, NDArray[Any]] = {**_for_search(parts)}
         arrays |= word_window_arrays(parts.track, symbol_features(parts.track))
+        arrays["moments"] = moments(parts.track)
     with times.stage("symbol"):
         arrays |= parts.symbol
     with times.stage("rhythm"):
@@ -114,9 +119,11 @@ def analyze(
         arrays |= keypose_arrays(keyposes, arrays["features_10hz"])
         arrays["keypose_thresholds"] = np.array([t1, t2], dtype=np.float64)
     offset = None if rhythm.offset is None else rhythm.offset.seconds
-    measures = measure(track, rms_energies, rhythm.beats.tempo)
+    with times.stage("measures"):
+        measures = measure(track, rms_energies, rhythm.beats.tempo)
+        quality = measure_quality(track, parts.track, arrays["movement_signs"])
     cautions = (*_of_start(motion), *rhythm.cautions)
-    return Analysis(motion, arrays, offset, cautions, measures, times.seconds)
+    return Analysis(motion, arrays, offset, cautions, measures, quality, times.seconds)
 
 
 def _of_start(motion: Motion) -> tuple[Caution, ...]:

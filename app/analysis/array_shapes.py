@@ -40,6 +40,7 @@ SHAPES: Mapping[str, tuple[int | None, ...]] = {
     "symbol_transitions": (None, None),
     "beat_times": (None,),
     "beat_facts": (3,),
+    "moments": (None, 33),
     "pose_cover": (None, 38),
     "keypose_frames": (None,),
     "keypose_thresholds": (2,),

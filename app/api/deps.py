@@ -22,6 +22,7 @@ from app.errors import Forbidden
 from app.services.library.library import Library
 from app.store import audit
 from app.store.clips import visibility
+from app.store.clips.license_policy import only_licenses
 from app.store.key_role import KeyRole
 
 _bearer = HTTPBearer(auto_error=False, description="An API key (`kinedex keys create`).")
@@ -63,13 +64,14 @@ class Allows:
         """Raises Unauthorized without a valid key, Forbidden if the key does not allow the call."""
         caller: Caller = request.state.caller
         caller.require(self.role)
+        allowed = request.app.state.settings.allowed_licenses
         if caller.source is not None and not self.is_of_source:
             raise Forbidden("A key for one source only lists, reads, finds and exports its clips.")
         if self.role is not KeyRole.READ and request.method != "GET":
-            with audit.calling(audited_call(request)):
+            with audit.calling(audited_call(request)), only_licenses(allowed):
                 yield
         else:
-            with visibility.only_source(caller.source):
+            with visibility.only_source(caller.source), only_licenses(allowed):
                 yield
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from app.api.guard.callers import is_open
+from app.services.curation import duplicates
 from app.services.library.fitted_models import KINDS_WITH_SIGNATURES, KINDS_WITH_UNKNOWN
 from app.services.library.library import Library
 from app.store import collections, evaluations, models, saved_searches, studies
@@ -51,6 +52,7 @@ def _of_others(tx: Tx) -> dict[str, str | None]:
     recognizer = [one for one in fitted if one.kind in KINDS_WITH_UNKNOWN]
     multilinear = [one for one in fitted if one.kind in KINDS_WITH_SIGNATURES]
     return {
+        "GROUP_ID": duplicates.example_id(tx),
         "JOB_ID": analysis[0].id if analysis else None,
         "PAIR_ID": pairs[0].id if pairs else None,
         "EVALUATION_ID": kept[0].id if kept else None,

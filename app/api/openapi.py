@@ -102,6 +102,7 @@ EvaluationId = Annotated[str, _id("an evaluation", "EVALUATION_ID")]
 CollectionId = Annotated[str, _id("a collection", "COLLECTION_ID")]
 ItemId = Annotated[str, _id("an item of it", "ITEM_ID")]
 SearchId = Annotated[str, _id("a saved search", "SEARCH_ID")]
+GroupId = Annotated[str, _id("a group of near-duplicates", "GROUP_ID")]
 WebhookId = Annotated[str, _id("a webhook", "WEBHOOK_ID")]
 AnnotationId = Annotated[str, _id("an annotation of the clip", "ANNOTATION_ID")]
 

@@ -13,6 +13,7 @@ from app.cli.session import open_client
 
 if TYPE_CHECKING:
     from kinedex.types.clips import Clip
+    from kinedex.types.measures import MeasuredClip
 
 program = typer.Typer(help="List, show, label and delete stored clips.", no_args_is_help=True)
 
@@ -184,7 +185,7 @@ def _print_csv(clips: Sequence[Clip]) -> None:
     print_csv((*COLUMNS, *sorted(keys)), rows)
 
 
-def _print_clips(clips: list[Clip], as_json: bool, *, is_one: bool) -> None:
+def _print_clips(clips: Sequence[Clip | MeasuredClip], as_json: bool, *, is_one: bool) -> None:
     if as_json:
         documents = [clip.to_json() for clip in clips]
         print_json(documents[0] if is_one else {"items": documents})
@@ -193,7 +194,7 @@ def _print_clips(clips: list[Clip], as_json: bool, *, is_one: bool) -> None:
         print_table(("", ""), _details(clip))
 
 
-def _details(clip: Clip) -> list[tuple[str, object]]:
+def _details(clip: Clip | MeasuredClip) -> list[tuple[str, object]]:
     rows: list[tuple[str, object]] = [
         (name, getattr(clip, name)) for name in ("id", "name", "state", "person", "task")
     ]

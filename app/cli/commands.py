@@ -67,6 +67,11 @@ COMMANDS = {
     "labels": CommandEntry(
         "app.cli.labels", "program", "Show and change the tree of tasks and words."
     ),
+    "duplicates": CommandEntry(
+        "app.cli.duplicates",
+        "duplicates",
+        "List groups of near-duplicates, each with the clip to keep.",
+    ),
     "jobs": CommandEntry(
         "app.cli.jobs", "program", "List, show and cancel work in the background."
     ),

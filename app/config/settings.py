@@ -76,6 +76,11 @@ class Settings(BaseSettings):
         description="Addresses or networks of reverse proxies, separated by commas. Only "
         "their `X-Forwarded-For` and `X-Forwarded-Proto` are believed.",
     )
+    allowed_licenses: _Listed = Field(
+        (),
+        description="Licenses with commas between them: searches find and exports give out no clip "
+        "with another license or without one; empty allows all.",
+    )
     cors_origins: _Listed = Field(
         (),
         description="Origins of web pages that may call the API from a browser, separated by "
@@ -225,7 +230,7 @@ class Settings(BaseSettings):
             raise ValueError("is empty: name a folder, or leave it unset")
         return value
 
-    @field_validator("trusted_proxies", "cors_origins", mode="before")
+    @field_validator("trusted_proxies", "cors_origins", "allowed_licenses", mode="before")
     @classmethod
     def _split(cls, value: Any) -> Any:
         if not isinstance(value, str):

@@ -33,6 +33,7 @@ from app.store.jobs import leases, outcomes, owners, queue
 from app.store.jobs.abandoned_jobs import Watch
 from app.store.jobs.record import ClaimedJob, JobKind
 from app.store.workers import Heartbeat
+from app.worker.curating import Curating
 from app.worker.deliveries import Deliveries
 from app.worker.executors import JobExecutors
 from app.worker.expiry import Expiry
@@ -75,9 +76,11 @@ def run_worker(
     lib = Library.open(settings)
     sweeps = Sweeps(lib.store, settings.quarantine_days)
     webhooks = Deliveries(lib.store)
+    curating = Curating(lib)
     try:
         swept = sweeps.begin()
         webhooks.begin()
+        curating.begin()
         if not settings.recognize_persons:
             persons.remove_person_models(lib)
         outdated = reanalysis.requeue_outdated(lib)
@@ -90,6 +93,7 @@ def run_worker(
     finally:
         sweeps.end()
         webhooks.end()
+        curating.end()
         lib.close()
 
 

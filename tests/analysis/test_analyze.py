@@ -49,6 +49,7 @@ def test_arrays_are_finite_with_documented_shapes_and_types(body: FloatArray) ->
         "msv_lambda": (1,), "msv_rho": (13,), "msv_epsilon": (n,),
         "msv_convergence": (len(arrays["msv_convergence"]), 2),
         "pose_cover": (len(arrays["pose_cover"]), 38),
+        "moments": (len(arrays["moments"]), 33),
         "motion_sample": (1250,), "angle_sample": (642,), "motion_shape": (1378,),
         "symbol_statistics": (131,), "movement_signs": (44,), "symbol_means": (states, 26),
         "symbol_variances": (states, 26), "symbol_transitions": (states, states),
@@ -82,7 +83,8 @@ def test_a_query_has_the_same_arrays_as_a_stored_clip() -> None:
     query = describe_for_search(motion_of(BODIES["walk"])).arrays
     assert set(stored) - set(query) == {
         "keypose_frames", "pose_cover", "symbol_means", "symbol_variances", "symbol_transitions",
-        "keypose_thresholds", WORD_WINDOWS, WORD_WINDOW_SPANS, *SEGMENT_TYPES, *BEAT_ARRAYS,
+        "keypose_thresholds", "moments", WORD_WINDOWS, WORD_WINDOW_SPANS,
+        *SEGMENT_TYPES, *BEAT_ARRAYS,
     }  # fmt: skip
     assert all(stored[name].tobytes() == query[name].tobytes() for name in query)
 

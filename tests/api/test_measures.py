@@ -7,7 +7,7 @@ from typing import Any
 import httpx2
 import pytest
 
-from app.store.clips.measures import MEASURES
+from app.store.clips.measures import EVERY, MEASURES
 from tests.api.conftest import assert_problem
 
 
@@ -79,3 +79,74 @@ def test_sources_and_licenses_are_counted(demo: httpx2.Client, clips: list[dict[
         for clip in clips[:2]:
             before = {name: clip[name] for name in ("source", "license")}
             demo.patch(f"/v1/clips/{clip['id']}", json=before)
+
+
+def test_every_measure_has_a_unit_a_definition_and_deciles(
+    demo: httpx2.Client, clips: list[dict[str, Any]]
+) -> None:
+    found = {one["name"]: one for one in demo.get("/v1/measures").json()["items"]}
+    assert list(found) == list(EVERY)
+    for one in found.values():
+        assert one["definition"]
+        if one["count"]:
+            assert one["quantiles"] == sorted(one["quantiles"])
+            assert (len(one["quantiles"]), sum(one["counts"])) == (11, one["count"])
+    walks = demo.get("/v1/measures", params={"task": "walk"}).json()["items"]
+    counted = {one["name"]: one["counts"] for one in walks}
+    tasks = [one["task"] for one in clips]
+    assert sum(counted["speed"]) == tasks.count("walk")
+    assert sum(counted["speed"][:3]) == 0  # no walk is slow
+
+
+def test_a_clip_shows_its_measures_beside_the_library(
+    demo: httpx2.Client, clips: list[dict[str, Any]]
+) -> None:
+    summary = {one["name"]: one for one in demo.get("/v1/measures").json()["items"]}
+    for clip in clips[:3]:
+        answer = demo.get(f"/v1/clips/{clip['id']}")
+        shown = answer.json()["measures"]
+        assert list(shown) == list(EVERY)
+        assert shown["speed"]["value"] == pytest.approx(clip["speed"])
+        for name, one in shown.items():
+            assert one["unit"] == summary[name]["unit"]
+            if one["value"] is None:
+                assert one["percentile"] is None
+                continue
+            least, most = summary[name]["quantiles"][0], summary[name]["quantiles"][-1]
+            assert least - 1e-6 <= one["value"] <= most + 1e-6
+            assert 0 <= one["percentile"] <= 100
+        tag = {"If-None-Match": answer.headers["ETag"]}
+        assert demo.get(f"/v1/clips/{clip['id']}", headers=tag).status_code == 304
+        some = demo.get(f"/v1/clips/{clip['id']}", params={"fields": "id,measures"}).json()
+        assert some == {"id": clip["id"], "measures": shown}
+
+
+@pytest.mark.parametrize("name", ["foot_skate", "dominance", "loop_gap", "range_left_knee"])
+def test_lists_and_searches_are_filtered_and_sorted_by_quality(
+    demo: httpx2.Client, clips: list[dict[str, Any]], name: str
+) -> None:
+    summary = {one["name"]: one for one in demo.get("/v1/measures").json()["items"]}
+    middle = summary[name]["quantiles"][5]
+    asked = {f"measure.{name}.min": middle, "sort": f"-{name}", "limit": 1000}
+    listed = demo.get("/v1/clips", params=asked).json()["items"]
+    values = [
+        demo.get(f"/v1/clips/{one['id']}", params={"fields": "measures"}).json()["measures"][name]
+        for one in listed[:10]
+    ]
+    shown = [one["value"] for one in values]
+    assert shown == sorted(shown, reverse=True)
+    assert min(shown) >= middle
+    bound = {f"measure.{name}.min": middle}
+    hits = demo.post(
+        "/v1/search/motion", json={"clip_id": clips[0]["id"], "limit": 1000, "filter": bound}
+    ).json()["items"]
+    found = {hit["clip"]["id"] for hit in hits}
+    assert found | {clips[0]["id"]} == {one["id"] for one in listed} | {clips[0]["id"]}
+
+
+def test_wrong_bounds_of_quality_are_named(demo: httpx2.Client) -> None:
+    for asked in ({"measure.height.min": "1"}, {"measure.jitter": "1"}):
+        answer = demo.get("/v1/clips", params=asked)
+        assert_problem(answer, 422, "bad_field", f"query.filter.{next(iter(asked))}")
+    answer = demo.get("/v1/clips", params={"measure.jitter.min": "much"})
+    assert_problem(answer, 422, "bad_field", "query.filter.measure.jitter.min")

@@ -54,6 +54,8 @@ MAX_TURN = 3.0
 """Radians: limit of the sign `turn_to_left`."""
 CYCLE = 0.3, 3.0
 """Seconds: bounds of a cycle."""
+SHORT = 0.3
+"""Seconds: cycle times below it differ little."""
 MIN_OVERLAP = 3
 """A cycle is compared with at least one part in this of the clip."""
 SLOW = 0.1
@@ -96,6 +98,12 @@ class _Parts:
 def movement_signs(track: BodyTrack) -> FloatArray:
     """(44,) the SIGNS of a motion of n >= 2 frames."""
     return np.asarray(signs_of_parts(track, np.zeros(1, dtype=np.int64), track.frames)[0])
+
+
+def cycle_of(signs: FloatArray) -> tuple[float, float]:
+    """How well a cycle repeats (0..1), and its time in seconds, from `signs` (44,)."""
+    likeness, lag = signs[[SIGNS.index("cycle"), SIGNS.index("cycle_time")]]
+    return float(likeness), float(np.exp(lag)) - SHORT
 
 
 def signs_of_parts(track: BodyTrack, firsts: IntArray, frames: int) -> FloatArray:
@@ -177,7 +185,7 @@ def _rhythm(parts: _Parts) -> list[FloatArray]:
     shares = variances / np.maximum(variances.sum(axis=1, keepdims=True), 1e-12)
     entropy = -(shares * np.log(np.maximum(shares, 1e-12))).sum(axis=1)
     duration = np.full(len(poses), np.log(parts.duration))
-    return [likeness, np.log(0.3 + lag), entropy, duration]
+    return [likeness, np.log(SHORT + lag), entropy, duration]
 
 
 def _cycle(poses: FloatArray, rate: float) -> tuple[FloatArray, FloatArray]:

@@ -17,6 +17,7 @@ from app.api.guard.audited import exported
 from app.api.openapi import BINARY, ClipId, body, refusals
 from app.api.queries import file_of
 from app.api.schemas.clips import Clip, ClipCreated, ClipForm, ClipList, ClipPatch, ClipQuery
+from app.api.schemas.measures import MeasuredClip
 from app.api.sparse import ChosenFields, sparse_item, sparse_page
 from app.api.validators import UNCHANGED, validate, weak_tag
 from app.errors import ClipNotFound, Conflict
@@ -24,6 +25,8 @@ from app.services.clips import catalogue as clips
 from app.services.clips.catalogue import StoredFile
 from app.services.clips.merging import OnConflict
 from app.services.clips.recordings import NewRecording
+from app.services.curation import measures
+from app.services.curation.measures import WithMeasures
 
 router = APIRouter(prefix="/v1/clips", tags=["clips"])
 
@@ -93,6 +96,7 @@ def list_clips(lib: Lib, query: Annotated[ClipQuery, Query()]) -> ClipList | Res
 
     `meta.KEY=VALUE` filters by metadata, `not_meta.KEY=VALUE` refuses a value, `meta.KEY.min=30`
     and `meta.KEY.max=40` filter by a number (keys: `GET /v1/metadata`).
+    `measure.NAME.min` and `measure.NAME.max` are bounds of a measure of `GET /v1/measures`.
     """
     page = clips.list_clips(lib, query.as_filter(), query.sort, query.limit, query.cursor)
     chosen = query.fields
@@ -102,16 +106,19 @@ def list_clips(lib: Lib, query: Annotated[ClipQuery, Query()]) -> ClipList | Res
 @router.get(
     "/{clip_id}",
     dependencies=[reads_source, quick],
-    response_model=Clip,
+    response_model=MeasuredClip,
     responses={304: UNCHANGED, **refusals(404)},
 )
 def get_clip(
     lib: Lib, request: Request, clip_id: ClipId, fields: ChosenFields = None
-) -> Clip | Response:
-    """One clip."""
+) -> MeasuredClip | Response:
+    """One clip, with its measures beside those of the library."""
     clip = clips.get_clip(lib, clip_id)
-    validate(request, weak_tag(clip, fields))
-    return sparse_item(Clip, fields, clip) if fields else Clip.model_validate(clip)
+    measured = WithMeasures(clip, measures.of_clip(lib, clip))
+    validate(request, weak_tag(clip, measured.measures, fields))
+    if fields:
+        return sparse_item(MeasuredClip, fields, measured)
+    return MeasuredClip.model_validate(measured)
 
 
 @router.patch(

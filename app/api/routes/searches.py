@@ -10,6 +10,7 @@ from fastapi import APIRouter, Depends, Query, Response
 from app.api.bodies import require_json
 from app.api.deps import Lib, reads, writes
 from app.api.guard.admission import changes, heavy, quick
+from app.api.hit_pages import HitPage
 from app.api.openapi import SearchId, refusals
 from app.api.schemas.collections import ListPage
 from app.api.schemas.composed_search import ComposedHits
@@ -24,7 +25,6 @@ from app.api.schemas.saved_searches import (
     as_stored,
     first_page,
 )
-from app.api.sparse import clip_fields, sparse_page
 from app.errors import ClipNotReady, Conflict, ModelNotFitted, NotEnoughLabels
 from app.services.find.by_parts import find_by_parts
 from app.services.searches import searches
@@ -90,17 +90,13 @@ def delete_search(lib: Lib, search_id: SearchId) -> None:
     response_model=ComposedHits,
     responses=refusals(404, 503, *SEARCHED),
 )
-def run_search(
-    lib: Lib, search_id: SearchId, page: Annotated[SearchPage, Query()]
-) -> ComposedHits | Response:
+def run_search(lib: Lib, search_id: SearchId, page: Annotated[SearchPage, Query()]) -> Response:
     """Run a saved search again. It does not count as looked at: see `POST .../seen`."""
     saved = searches.get(lib, search_id)
+    shown = HitPage.of(ComposedHits, page.fields)
     sent = page.model_dump(exclude={"fields"}, exclude_none=True)
-    query = replace(as_query(saved, **sent).query(), clip_fields=clip_fields(page.fields))
-    found = find_by_parts(lib, query)
-    if page.fields:
-        return sparse_page(ComposedHits, page.fields, found)
-    return ComposedHits.model_validate(found)
+    query = as_query(saved, **sent).query()
+    return shown.answer(find_by_parts(lib, replace(query, clip_fields=shown.clip_fields)))
 
 
 @router.get(

@@ -6,7 +6,7 @@ from dataclasses import replace
 from datetime import datetime
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, ConfigDict, Field, Json
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, Json
 
 from app.api.schemas.base import (
     ENERGY,
@@ -42,31 +42,20 @@ from app.motion.skeleton.recording import FRAME_RATES
 from app.search.index.filters import parse_filter
 from app.services.fields import MAX_KEYPOSES, MAX_OFFSET, TEMPI
 from app.store.clips.filter import MISSABLE, ClipFilter
+from app.store.clips.listing import SORT_NAMES
 from app.store.clips.record import ClipState, Reanalysis
 
-Sort = Literal[
-    "created_at",
-    "-created_at",
-    "name",
-    "-name",
-    "duration",
-    "-duration",
-    "frame_rate",
-    "-frame_rate",
-    "joints",
-    "-joints",
-    "travel",
-    "-travel",
-    "speed",
-    "-speed",
-    "energy",
-    "-energy",
-    "tempo",
-    "-tempo",
-    "person",
-    "-person",
-    "task",
-    "-task",
+
+def _is_order(name: str) -> str:
+    if name.removeprefix("-") not in SORT_NAMES:
+        raise ValueError(f"Input should be one of {', '.join(SORT_NAMES)}, or one with a leading -")
+    return name
+
+
+Sort = Annotated[
+    str,
+    AfterValidator(_is_order),
+    Field(json_schema_extra={"pattern": f"^-?({'|'.join(SORT_NAMES)})$"}),
 ]
 Stack = Annotated[
     str,

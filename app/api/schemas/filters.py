@@ -8,7 +8,7 @@ from pydantic import ConfigDict, Field, ModelWrapValidatorHandler, PrivateAttr, 
 from pydantic.config import JsonDict
 
 from app.api.schemas.base import ENERGY, SPEED, TEMPO, TRAVEL, AnyOf, Incoming, Measure, Seconds
-from app.search.index.filters import META_PATTERN, is_metadata_key
+from app.search.index.filters import MEASURE_PATTERN, META_PATTERN, is_open_key
 
 _VALUE: JsonDict = {"type": ["string", "number", "boolean"], "maxLength": 300}
 _KINDS = "Kinds of it too, as of a word (`/v1/labels/tree`); none with = before it."
@@ -18,15 +18,21 @@ _META: JsonDict = {
     "anyOf": [_VALUE, {"type": "array", "items": _VALUE, "maxItems": 100}],
 }
 
+_BOUND: JsonDict = {"description": "A bound of a measure, included.", "type": "number"}
+
 
 class Filter(Incoming):
     """Filters of the clips before they are ranked. A clip must pass all given filters.
 
     `meta.KEY=VALUE` filters by the metadata of the clips, `not_meta.KEY=VALUE` leaves clips with
     that value out, and `meta.KEY.min=30`, `meta.KEY.max=40` filter by a number.
+    `measure.NAME.min` and `measure.NAME.max` are bounds of a measure of `GET /v1/measures`, as in
+    `measure.foot_skate.max=0.1`.
     """
 
-    model_config = ConfigDict(json_schema_extra={"patternProperties": {META_PATTERN: _META}})
+    model_config = ConfigDict(
+        json_schema_extra={"patternProperties": {META_PATTERN: _META, MEASURE_PATTERN: _BOUND}}
+    )
 
     _metadata: dict[str, Any] = PrivateAttr(default_factory=dict)
 
@@ -66,7 +72,7 @@ class Filter(Incoming):
         """Keep the conditions on metadata apart: their names are not known in advance."""
         if not isinstance(data, dict):
             return handler(data)
-        conditions = {name: value for name, value in data.items() if is_metadata_key(name)}
+        conditions = {name: value for name, value in data.items() if is_open_key(name)}
         model = handler({name: value for name, value in data.items() if name not in conditions})
         model._metadata = conditions
         return model

@@ -8,6 +8,7 @@ from kinedex.calls import clip_annotations as calls_clip_annotations
 from kinedex.calls import clip_views as calls_clip_views
 from kinedex.calls import clips as calls_clips
 from kinedex.calls import collections as calls_collections
+from kinedex.calls import curation as calls_curation
 from kinedex.calls import edits as calls_edits
 from kinedex.calls import evaluations as calls_evaluations
 from kinedex.calls import export as calls_export
@@ -18,6 +19,7 @@ from kinedex.calls import keyposes as calls_keyposes
 from kinedex.calls import label_tree as calls_label_tree
 from kinedex.calls import labels as calls_labels
 from kinedex.calls import low_dimensional as calls_low_dimensional
+from kinedex.calls import measures as calls_measures
 from kinedex.calls import models as calls_models
 from kinedex.calls import poses as calls_poses
 from kinedex.calls import recognize as calls_recognize
@@ -136,6 +138,17 @@ class Labels(Group[SenderType]):
     put_tree = CallMethod(calls_label_tree.put_label_tree)
 
 
+class Curation(Group[SenderType]):
+    """Measures, near-duplicates and outliers: what keeps a library clean."""
+
+    measures = CallMethod(calls_measures.list_measures)
+    duplicates = ListMethod(calls_curation.list_duplicates)
+    dismiss_duplicates = CallMethod(calls_curation.dismiss_duplicates)
+    outliers = CallMethod(calls_curation.list_outliers)
+    accept_outlier = CallMethod(calls_curation.accept_outlier)
+    dismiss_outlier = CallMethod(calls_curation.dismiss_outlier)
+
+
 class Studies(Group[SenderType]):
     """Blind studies that compare low-dimensional motions."""
 
@@ -217,6 +230,7 @@ class RootBase(Group[SenderType]):
         self.search = Search(sender)
         self.models = Models(sender)
         self.labels = Labels(sender)
+        self.curation = Curation(sender)
         self.studies = Studies(sender)
         self.service = Service(sender)
         self.collections = Collections(sender)

@@ -5,7 +5,8 @@ of its values), the same keys with the prefix `not_` (the clip has none of the v
 `min_NAME max_NAME` for each measure, such as `min_duration` (seconds). `collection` is the id of a
 collection, or an array of ids. `folder` and `not_folder`
 name folders of the paths of files; the folders below them count too. `meta.KEY` and `not_meta.KEY`
-are values of a key of the metadata, `meta.KEY.min` and `meta.KEY.max` numbers. Both ends of a range
+are values of a key of the metadata, `meta.KEY.min` and `meta.KEY.max` numbers. `measure.NAME.min`
+and `measure.NAME.max` are bounds of any measure (`measures.EVERY`). Both ends of a range
 are included. A clip must meet all conditions. A clip without a label meets all `not_` conditions
 for this label; a clip without a measure meets no condition on it.
 """
@@ -21,8 +22,8 @@ from typing import Any
 from app.errors import BadField
 from app.kinedex_error import Place
 from app.models.words.language.normalize import normalize_word
-from app.store.clips.filter import ClipFilter, MetadataCondition
-from app.store.clips.measures import MEASURES
+from app.store.clips.filter import ClipFilter, MeasureBound, MetadataCondition
+from app.store.clips.measures import EVERY, MEASURES
 from app.store.clips.metadata_values import as_text, from_cell
 from app.store.clips.record import META
 
@@ -36,6 +37,9 @@ MAX_LABEL_LENGTH = 300
 """Largest number of characters of a label; no clip has a longer one."""
 RANGE_KEYS = tuple(f"{end}_{name}" for name in MEASURES for end in ("min", "max"))
 NOT_META = NOT + META
+MEASURE = "measure."
+MEASURE_PATTERN = rf"^measure\.({'|'.join(EVERY)})\.(min|max)$"
+"""The names of bounds of measures, as a regular expression."""
 META_PATTERN = r"^(not_)?meta\."
 """The names of conditions on metadata, as a regular expression."""
 MINIMUM, MAXIMUM = ".min", ".max"
@@ -51,9 +55,12 @@ def parse_filter(given: Mapping[str, Any] | None) -> ClipFilter:
     places: list[Place] = []
     values: dict[str, Any] = {}
     conditions = _Conditions()
+    bounds: dict[str, MeasureBound] = {}
     for key, value in (given or {}).items():
         try:
-            if is_metadata_key(key):
+            if key.startswith(MEASURE):
+                _add_bound(bounds, key, value)
+            elif is_open_key(key):
                 conditions.add(key, value)
             else:
                 values[key] = _read(key, value)
@@ -61,12 +68,12 @@ def parse_filter(given: Mapping[str, Any] | None) -> ClipFilter:
             places.append(Place(f"filter.{key}", str(problem)))
     if places:
         raise BadField("The filter cannot be used.", places=places)
-    return ClipFilter(**values, metadata=conditions.all())
+    return ClipFilter(**values, metadata=conditions.all(), measured=tuple(bounds.values()))
 
 
-def is_metadata_key(key: str) -> bool:
-    """Whether a key of a filter is a condition on metadata."""
-    return key.startswith((META, NOT_META))
+def is_open_key(key: str) -> bool:
+    """Whether a key of a filter is a condition on metadata, or a bound of a measure."""
+    return key.startswith((META, NOT_META, MEASURE))
 
 
 def as_filter(given: ClipFilter | Mapping[str, Any] | None) -> ClipFilter:
@@ -109,6 +116,21 @@ class _Conditions:
     def all(self) -> tuple[MetadataCondition, ...]:
         """All conditions."""
         return tuple(self._by_key.values())
+
+
+def _add_bound(bounds: dict[str, MeasureBound], key: str, value: Any) -> None:
+    """Add one bound of a measure. Raises ValueError."""
+    name, _, end = key.removeprefix(MEASURE).rpartition(".")
+    if name not in EVERY or f".{end}" not in (MINIMUM, MAXIMUM):
+        raise ValueError(
+            f"must be {MEASURE}NAME{MINIMUM} or {MEASURE}NAME{MAXIMUM}; the names are "
+            + ", ".join(EVERY)
+        )
+    before = bounds.get(name, MeasureBound(name))
+    if f".{end}" == MINIMUM:
+        bounds[name] = replace(before, minimum=_number(value))
+    else:
+        bounds[name] = replace(before, maximum=_number(value))
 
 
 def _nfc(text: str) -> str:

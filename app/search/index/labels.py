@@ -19,7 +19,8 @@ from app.search.index.metadata import MetadataColumns
 from app.search.ranking.ranking import IdArray
 from app.store.clips.filter import ClipFilter, is_in_folder
 from app.store.clips.index_feed import IndexedClip
-from app.store.clips.measures import FOUND
+from app.store.clips.license_policy import allowed_licenses
+from app.store.clips.measures import FOUND, QUALITY
 from app.store.clips.visibility import visible_source
 
 NAMED = ("person", "task", "license", "source", "folder")
@@ -113,19 +114,22 @@ class LabelView:
     """The labels of n clips at one moment, by the clips' numbers 0..n-1.
 
     ids: (n,) objects; alive: (n,) whether the clip was not removed; durations: (n,) seconds;
-    measures: (n, m) in the order of FOUND, NaN for those that a clip lacks; coded: the columns of
-    codes (n,) by label; labels: maps labels to codes.
+    measures: (n, m) in the order of FOUND, NaN for those that a clip lacks; quality: (n, q) float32
+    in the order of QUALITY, the same; coded: the columns of codes (n,) by label; labels: maps
+    labels to codes.
     """
 
     ids: IdArray
     alive: BoolArray
     durations: FloatArray
     measures: FloatArray
+    quality: FloatArray
     coded: dict[str, IntArray]
     labels: Labels
 
     def mask(self, clip_filter: ClipFilter, exclude: Iterable[str] = ()) -> BoolArray:
-        """(n,) whether each clip passes a filter, is visible (`visibility`) and is not excluded.
+        """(n,) whether each clip passes a filter, is visible (`visibility`), has an allowed
+        license (`license_policy`) and is not excluded.
 
         The filter's state and name are ignored: every clip here is ready.
         """
@@ -145,6 +149,8 @@ class LabelView:
         source = visible_source()
         if source is not None:
             mask &= _any_of(self.coded["source"], self.labels.named["source"].codes([source]))
+        if licenses := allowed_licenses():
+            mask &= _any_of(self.coded["license"], self.labels.named["license"].codes(licenses))
         for clip_id in exclude:
             mask[self._numbers_of(clip_id)] = False
         return mask
@@ -158,6 +164,8 @@ class LabelView:
 
     def measured(self, name: str) -> FloatArray:
         """(n,) a measure of each clip, NaN for clips without it."""
+        if name in QUALITY:
+            return self.quality[:, QUALITY.index(name)]
         return self.durations if name == "duration" else self.measures[:, FOUND.index(name)]
 
     def word_sets(self) -> tuple[IntArray, tuple[frozenset[str], ...]]:
@@ -199,6 +207,7 @@ class Labels:
         self._ids = Column(object)
         self._durations = Column(np.float64)
         self._measures = Column(np.float64, (len(FOUND),))
+        self._quality = Column(np.float32, (len(QUALITY),))
         self._alive = Column(np.bool_)
 
     def __len__(self) -> int:
@@ -216,6 +225,7 @@ class Labels:
         self._ids.extend([clip.id for clip in clips])
         self._durations.extend([clip.duration for clip in clips])
         self._measures.extend([clip.measures for clip in clips])
+        self._quality.extend([clip.quality for clip in clips])
         self._alive.extend(np.ones(len(clips), dtype=bool))
         self.words.extend(clip.words for clip in clips)
         self.metadata.extend(clip.metadata for clip in clips)
@@ -255,6 +265,7 @@ class Labels:
             words=self.words.at(number),
             metadata=self.metadata.at(number),
             measures=tuple(self._measures.view()[number].tolist()),
+            quality=tuple(self._quality.view()[number].tolist()),
             array=array,
             **named,
         )
@@ -267,6 +278,7 @@ class Labels:
             alive=self._alive.view(),
             durations=self._durations.view(),
             measures=self._measures.view(),
+            quality=self._quality.view(),
             coded=coded | {"word": self.words.column.view()},
             labels=self,
         )

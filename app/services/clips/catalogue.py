@@ -18,6 +18,7 @@ from app.services.clips.recordings import NewRecording, attached, stage
 from app.services.library.filters import resolved_filter
 from app.services.library.library import Library
 from app.store import audit
+from app.store.clips import license_policy
 from app.store.clips import listing as clip_listing
 from app.store.clips import repository as stored
 from app.store.clips.filter import ClipFilter
@@ -274,8 +275,12 @@ def delete_clip(lib: Library, clip_id: str) -> None:
 
 
 def open_file(lib: Library, clip_id: str) -> StoredFile:
-    """The original file of a clip in any state. Raises ClipNotFound, FileDamaged."""
+    """The original file of a clip in any state.
+
+    Raises ClipNotFound, FileDamaged, LicenseNotAllowed.
+    """
     clip = get_clip(lib, clip_id)
+    license_policy.check(clip.license)
     path = lib.store.files.checked_path(clip.sha256)
     return StoredFile(path, clip.file_name, clip.file_size, clip.sha256)
 
@@ -283,7 +288,9 @@ def open_file(lib: Library, clip_id: str) -> StoredFile:
 def open_recording(lib: Library, clip_id: str) -> StoredFile:
     """The file of a clip's recording. Raises the errors of `open_file`, and NotFound if the clip
     has no recording."""
-    audio = _recording_of(get_clip(lib, clip_id))
+    clip = get_clip(lib, clip_id)
+    license_policy.check(clip.license)
+    audio = _recording_of(clip)
     path = lib.store.files.checked_path(audio.sha256)
     return StoredFile(path, audio.name, audio.size, audio.sha256)
 

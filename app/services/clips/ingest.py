@@ -30,6 +30,7 @@ from app.services.library.keypose_thresholds import library_thresholds
 from app.services.library.library import Library
 from app.services.library.stored_motion import motion_arrays
 from app.store import stage_times
+from app.store.clips import quality
 from app.store.clips import repository as stored
 from app.store.clips.record import ClipFacts, ClipRecord, ClipWarning
 from app.store.database.engine import Tx
@@ -91,6 +92,8 @@ def finish(tx: Tx, claimed: ClaimedJob, clip: ClipRecord, analysis: Analysis) ->
     outcomes.finish_ingest(
         tx, claimed.lease, clip.id, facts(analysis), arrays, settles_imports=False
     )
+    if analysis.quality is not None:
+        quality.put(tx, clip.id, analysis.quality)
     stage_times.add(tx, analysis.stage_seconds)
 
 

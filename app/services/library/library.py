@@ -10,6 +10,7 @@ from app.analysis.descriptors.windows import WIDTH, WINDOW_SCALES
 from app.analysis.descriptors.word_windows import INPUT_WIDTH, WORD_WINDOW_SPANS, WORD_WINDOWS
 from app.analysis.segments.segments import SEGMENT_SPANS, SEGMENT_VECTORS, SEGMENT_WIDTH
 from app.config import Settings
+from app.search.duplicates.candidates import MOMENTS
 from app.search.index.array_cache import ArrayCache
 from app.search.index.model_rows import ModelRows
 from app.search.index.projected_index import ProjectedIndex
@@ -39,8 +40,9 @@ class Library:
     clips. pool: analyzes uploaded queries; a worker has its own pool. windows: the windows of all
     clips, by the name of their scale; segments: the segments of all clips; poses: the pose covers
     of all clips; word_windows: the windows in which words are looked for, and window_words: their
-    probabilities; the first search that needs paced or one of these four loads it. metrics: the
-    clips' coordinates in each learned metric. tree: of the labels.
+    probabilities; moments: their moments, for near-duplicates; the first search that needs paced or
+    one of these five loads it. metrics: the clips' coordinates in each learned metric. tree: of the
+    labels.
     """
 
     settings: Settings
@@ -59,6 +61,7 @@ class Library:
     poses: VectorIndex
     word_windows: VectorIndex
     window_words: PartScores
+    moments: VectorIndex
     metrics: Mapping[ModelKind, ProjectedIndex]
     tree: KeptTree
 
@@ -100,6 +103,7 @@ class Library:
                 layout=parts_layout(WORD_WINDOWS, WORD_WINDOW_SPANS, INPUT_WIDTH)
             ),
             window_words=PartScores(),
+            moments=VectorIndex(layout=MOMENTS),
             metrics={kind: ProjectedIndex(index) for kind in METRICS},
             tree=KeptTree(),
         )

@@ -45,6 +45,7 @@ from app.services.views.exported import Export
 from app.services.views.frame_rates import requested_rate
 from app.services.views.low_dimensional import Reduction, as_motion, reduce
 from app.services.views.tables import table_of
+from app.store.clips import license_policy
 from app.store.clips.record import ClipRecord
 
 
@@ -75,7 +76,7 @@ def export(
     format). joints: all, or those with a role, by role. reduction: reduce the motion to few
     dimensions, on the 13 joint roles, by default at 30 Hz. part: only these seconds of the clip.
 
-    Raises BadField, ClipNotFound, ClipNotReady, NotEnoughKeyposes, NoGait.
+    Raises BadField, ClipNotFound, ClipNotReady, LicenseNotAllowed, NotEnoughKeyposes, NoGait.
     """
     options = checked_options(
         format,
@@ -88,6 +89,7 @@ def export(
         part=part,
     )
     clip = ready_clip(lib, clip_id)
+    license_policy.check(clip.license)
     if options.content is not ExportContent.POSITIONS:
         own_rate, joint_count = clip.frame_rate or 1.0, clip.joints or 0
         rate = requested_rate(lib, clip, fps, source=own_rate, joints=joint_count)

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from sqlalchemy import ColumnElement, Select, String, and_, cast, func, or_, select
 
 from app.store.clips import visibility
-from app.store.clips.measures import MEASURES
+from app.store.clips.measures import MEASURES, QUALITY
 from app.store.clips.record import ClipState
 from app.store.database.collection_tables import collection_items
-from app.store.database.tables import clip_metadata, clip_words, clips
+from app.store.database.tables import clip_measures, clip_metadata, clip_words, clips
 
 _LABELS = ("person", "task", "license", "source")
 """Labels that are columns of the table `clips`. ClipFilter has two fields for each: NAME and
@@ -45,6 +45,15 @@ class MetadataCondition:
 
 
 @dataclass(frozen=True, slots=True)
+class MeasureBound:
+    """The least and the largest value of one of `measures.EVERY`, both ends included."""
+
+    name: str
+    minimum: float | None = None
+    maximum: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class ClipFilter:
     """Conditions on clips. A clip passes the filter if all conditions are true.
 
@@ -55,8 +64,8 @@ class ClipFilter:
     search in memory needs (`services.library.filters`); missing: labels
     (`MISSABLE`) of which the clip lacks at least one; has_warnings: whether it has any; q: a part
     of the name, the path or a text of the metadata, in upper or lower case; min_NAME, max_NAME: of
-    a measure (`measures.MEASURES`), both ends included. A search knows none of state, missing,
-    has_warnings and q.
+    a measure (`measures.MEASURES`), both ends included; measured: bounds of any. A search knows
+    none of state, missing, has_warnings and q.
     """
 
     person: tuple[str, ...] = ()
@@ -74,6 +83,7 @@ class ClipFilter:
     collection: tuple[str, ...] = ()
     members: tuple[str, ...] = ()
     metadata: tuple[MetadataCondition, ...] = ()
+    measured: tuple[MeasureBound, ...] = ()
     state: tuple[ClipState, ...] = ()
     missing: tuple[str, ...] = ()
     has_warnings: bool | None = None
@@ -104,6 +114,8 @@ class ClipFilter:
             least, most = getattr(self, f"min_{name}"), getattr(self, f"max_{name}")
             if (least, most) != (None, None):
                 yield name, least, most
+        for bound in self.measured:
+            yield bound.name, bound.minimum, bound.maximum
 
 
 def condition(filter: ClipFilter, clip_id: ColumnElement[str] = clips.c.id) -> ColumnElement[bool]:
@@ -205,7 +217,19 @@ def _carriers(words: tuple[str, ...]) -> Select[tuple[str]]:
 
 def _range_terms(filter: ClipFilter) -> Iterator[ColumnElement[bool]]:
     for name, least, most in filter.ranges():
+        if name in QUALITY:
+            yield clips.c.id.in_(_measured(name, least, most))
+            continue
         if least is not None:
             yield clips.c[name] >= least
         if most is not None:
             yield clips.c[name] <= most
+
+
+def _measured(name: str, least: float | None, most: float | None) -> Select[tuple[str]]:
+    """Ids of the clips with a measure of quality between two bounds."""
+    column = clip_measures.c[name]
+    query = select(clip_measures.c.clip_id).where(column.is_not(None))
+    if least is not None:
+        query = query.where(column >= least)
+    return query if most is None else query.where(column <= most)

@@ -17,12 +17,12 @@ from typing import Any
 from numpy.typing import NDArray
 from sqlalchemy import and_, bindparam, func, select
 
-from app.store.clips.measures import FOUND
+from app.store.clips.measures import FOUND, QUALITY
 from app.store.clips.metadata_values import MetadataValue, from_text
 from app.store.clips.record import ClipState
 from app.store.database.blobs import from_blob_if_whole
 from app.store.database.engine import Tx
-from app.store.database.tables import clip_arrays, clip_metadata, clip_words, clips
+from app.store.database.tables import clip_arrays, clip_measures, clip_metadata, clip_words, clips
 
 BATCH = 5000
 """Clips in one batch."""
@@ -59,6 +59,7 @@ _CLIPS = (
         clips.c.duration,
         _WORDS,
         *(clips.c[name] for name in FOUND),
+        *(clip_measures.c[name] for name in QUALITY),
         clips.c.folder,
         _METADATA,
         clip_arrays.c.dtype,
@@ -71,6 +72,7 @@ _CLIPS = (
         and_(clip_arrays.c.clip_id == clips.c.id, clip_arrays.c.name == bindparam("array")),
         isouter=True,
     )
+    .join(clip_measures, clip_measures.c.clip_id == clips.c.id, isouter=True)
     # No condition on the state: SQLite would use the index of the state and read all ready clips.
     .where(clips.c.changed_version > bindparam("since"))
     .order_by(clips.c.changed_version)
@@ -87,6 +89,8 @@ IndexedMetadata = tuple[tuple[str, MetadataValue], ...]
 UNKNOWN: IndexedMeasures = (math.nan,) * len(FOUND)
 """The measures of a clip that lacks them all."""
 
+UNKNOWN_QUALITY: IndexedMeasures = (math.nan,) * len(QUALITY)
+
 
 @dataclass(frozen=True, slots=True)
 class IndexedClip:
@@ -94,7 +98,7 @@ class IndexedClip:
 
     duration: seconds; array: the requested array, read-only, None if the clip does not have it
     (an earlier version of the analysis did not compute it) or if it is damaged; folder: None if the
-    clip came without a path.
+    clip came without a path; quality: the measures QUALITY, NaN for those that it lacks.
     """
 
     id: str
@@ -109,6 +113,7 @@ class IndexedClip:
     folder: str | None = None
     metadata: IndexedMetadata = ()
     measures: IndexedMeasures = UNKNOWN
+    quality: IndexedMeasures = UNKNOWN_QUALITY
 
 
 def changed_since(tx: Tx, since: int, array: str) -> Iterator[list[IndexedClip]]:
@@ -137,8 +142,13 @@ def _indexed(row: Sequence[Any]) -> IndexedClip:
         None if data is None else from_blob_if_whole(dtype, shape, data),
         folder,
         _metadata_of(metadata or ""),
-        tuple(math.nan if value is None else value for value in measures),
+        _with_nan(measures[: len(FOUND)]),
+        _with_nan(measures[len(FOUND) :]),
     )
+
+
+def _with_nan(values: Sequence[float | None]) -> IndexedMeasures:
+    return tuple(math.nan if value is None else value for value in values)
 
 
 @lru_cache(maxsize=10_000)

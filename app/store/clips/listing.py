@@ -13,12 +13,12 @@ from app.errors import BadField
 from app.kinedex_error import Place
 from app.store.clips import repository as clip_repository
 from app.store.clips.filter import ClipFilter, condition, id_sets
-from app.store.clips.measures import MEASURES
+from app.store.clips.measures import MEASURES, QUALITY
 from app.store.clips.record import REANALYSIS_OPEN, ClipRecord, ClipState, Reanalysis
 from app.store.database.blobs import to_blob
 from app.store.database.engine import Tx
 from app.store.database.paging import Page, Position, Value, after, read_cursor, write_cursor
-from app.store.database.tables import clip_arrays, clip_metadata, clips
+from app.store.database.tables import clip_arrays, clip_measures, clip_metadata, clips
 from app.store.database.totals import Total, total_of
 
 DEFAULT_SORT = "-created_at"
@@ -27,10 +27,20 @@ FEW = 5000
 (100,000 clips, SQLite)."""
 
 
+LEAST = -1e30
+"""Stands for a measure that a clip lacks: less than any value."""
+
+
 @dataclass(frozen=True, slots=True)
 class _Sort:
     column: ColumnElement[Value]
     kind: type[Value]
+
+
+def _of_quality(name: str) -> ColumnElement[Value]:
+    """A measure of quality as a column of `clips`; some are negative."""
+    found = select(clip_measures.c[name]).where(clip_measures.c.clip_id == clips.c.id)
+    return func.coalesce(found.scalar_subquery(), LEAST)
 
 
 # coalesce: databases sort NULL differently; so a clip without the value sorts before all others.
@@ -38,6 +48,7 @@ _SORTS: dict[str, _Sort] = {
     "created_at": _Sort(clips.c.created_at, datetime),
     "name": _Sort(clips.c.name_folded, str),
     **{name: _Sort(func.coalesce(clips.c[name], -1.0), float) for name in MEASURES},
+    **{name: _Sort(_of_quality(name), float) for name in QUALITY},
     "person": _Sort(func.coalesce(clips.c.person, ""), str),
     "task": _Sort(func.coalesce(clips.c.task, ""), str),
 }

@@ -17,6 +17,7 @@ from sqlalchemy import (
     false,
 )
 
+from app.analysis.quality.definitions import NAMES
 from app.store.database.columns import UtcDateTime, clip_key, json_column, metadata
 
 library = Table(
@@ -122,6 +123,49 @@ clip_metadata = Table(
     # With all columns that filters and counts read, so that they read no rows of the table.
     Index(None, "key", "text", "kind", "clip_id"),
     Index(None, "key", "number", "kind", "clip_id"),
+)
+
+# Measures of quality and movement, NULL for those that a clip lacks.
+clip_measures = Table(
+    "clip_measures",
+    metadata,
+    clip_key(primary_key=True),
+    *(Column(name, Float) for name in NAMES),
+)
+
+# Clips that show the same take or almost the same motion: see `store.curation.pairs`.
+duplicate_pairs = Table(
+    "duplicate_pairs",
+    metadata,
+    clip_key(primary_key=True),
+    Column(
+        "other_id", String, ForeignKey("clips.id", ondelete="CASCADE"), primary_key=True, index=True
+    ),
+    Column("kind", String, nullable=False),
+    Column("distance", Float, nullable=False),
+    Column("offset", Float, nullable=False),
+    Column("shift", Float, nullable=False),
+    Column("seconds", Float, nullable=False),
+    Column("is_mirrored", Boolean, nullable=False),
+    Column("dismissed_at", UtcDateTime),
+)
+
+# The library version of each clip when it was compared with the others.
+duplicate_checks = Table(
+    "duplicate_checks",
+    metadata,
+    clip_key(primary_key=True),
+    Column("version", BigInteger, nullable=False),
+)
+
+# What a person has said is right although it looks wrong, for one value of a label.
+dismissed_outliers = Table(
+    "dismissed_outliers",
+    metadata,
+    clip_key(primary_key=True),
+    Column("reason", String, primary_key=True),
+    Column("label", String, nullable=False),
+    Column("dismissed_at", UtcDateTime, nullable=False),
 )
 
 tombstones = Table(

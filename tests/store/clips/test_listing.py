@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from app.errors import BadField, PageNotFound
 from app.store.clips import listing as clip_listing
-from app.store.clips.filter import ClipFilter
+from app.store.clips import quality
+from app.store.clips.filter import ClipFilter, MeasureBound
 from app.store.clips.measures import MEASURES
 from app.store.clips.record import ClipRecord, ClipState, ClipWarning
 from app.store.store import Store
@@ -120,7 +121,7 @@ KEYS: dict[str, Callable[[ClipRecord], object]] = {
 
 @pytest.mark.parametrize("limit", [1, 2, 6, 50])
 @pytest.mark.parametrize("descending", [False, True])
-@pytest.mark.parametrize("name", clip_listing.SORT_NAMES)
+@pytest.mark.parametrize("name", KEYS)
 def test_pages_put_together_are_the_sorted_list(
     store: Store, library_of_six: list[ClipRecord], name: str, descending: bool, limit: int
 ) -> None:
@@ -135,6 +136,30 @@ def test_pages_put_together_are_the_sorted_list(
             if (cursor := page.next) is None:
                 break
     assert seen == sorted(library_of_six, key=KEYS[name], reverse=descending)
+
+
+@pytest.mark.parametrize("descending", [False, True])
+def test_lists_are_sorted_and_filtered_by_measures_of_quality(
+    store: Store, library_of_six: list[ClipRecord], descending: bool
+) -> None:
+    """Some values are negative, and a clip without the measure comes before all of them."""
+    known = {clip.id: value for clip, value in zip(library_of_six, (-3.0, 2.5, 0.0), strict=False)}
+    with store.write() as tx:
+        for clip_id, value in known.items():
+            quality.put(tx, clip_id, {"dominance": value})
+    sort = "-dominance" if descending else "dominance"
+    with store.read() as tx:
+        page = clip_listing.list_clips(tx, ClipFilter(), sort=sort, limit=50)
+        found = [known.get(clip.id) for clip in page.items]
+        low = clip_listing.list_ids(
+            tx, ClipFilter(measured=(MeasureBound("dominance", None, 0.0),))
+        )
+        some = clip_listing.list_ids(tx, ClipFilter(measured=(MeasureBound("dominance", -1, 3),)))
+        assert quality.get(tx, page.items[0].id)["turn"] is None
+    expected = [None, None, None, -3.0, 0.0, 2.5]
+    assert found == (expected[::-1] if descending else expected)
+    assert set(low) == {clip_id for clip_id, value in known.items() if value <= 0}
+    assert set(some) == {clip_id for clip_id, value in known.items() if value >= -1}
 
 
 def test_a_page_is_stable_while_clips_come_and_go(

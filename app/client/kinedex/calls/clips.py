@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from kinedex.types.bodies import Filter
     from kinedex.types.choices import ClipState
     from kinedex.types.clips import Clip, ClipCreated, ClipList
+    from kinedex.types.measures import MeasuredClip
 
 
 def list_clips(
@@ -47,31 +48,7 @@ def list_clips(
     missing: Sequence[Literal["person", "task", "words"]] | None = None,
     has_warnings: bool | None = None,
     q: str | None = None,
-    sort: Literal[
-        "created_at",
-        "-created_at",
-        "name",
-        "-name",
-        "duration",
-        "-duration",
-        "frame_rate",
-        "-frame_rate",
-        "joints",
-        "-joints",
-        "travel",
-        "-travel",
-        "speed",
-        "-speed",
-        "energy",
-        "-energy",
-        "tempo",
-        "-tempo",
-        "person",
-        "-person",
-        "task",
-        "-task",
-    ]
-    | None = None,
+    sort: str | None = None,
     limit: int | None = None,
     cursor: str | None = None,
     fields: Sequence[str] | None = None,
@@ -80,7 +57,8 @@ def list_clips(
     """List the clips that pass every filter. Repeat a label parameter to accept several values.
 
     `meta.KEY=VALUE` filters by metadata, `not_meta.KEY=VALUE` refuses a value, `meta.KEY.min=30`
-    and `meta.KEY.max=40` filter by a number (keys: `GET /v1/metadata`).
+    and `meta.KEY.max=40` filter by a number (keys: `GET /v1/metadata`). `measure.NAME.min` and
+    `measure.NAME.max` are bounds of a measure of `GET /v1/measures`.
 
     task: Kinds of it too, as of a word (`/v1/labels/tree`); none with = before it.
     not_person: Clips of none of these persons.
@@ -256,20 +234,20 @@ def create_clip(
     )
 
 
-def get_clip(clip_id: str, *, fields: Sequence[str] | None = None) -> Call[Clip]:
-    """One clip.
+def get_clip(clip_id: str, *, fields: Sequence[str] | None = None) -> Call[MeasuredClip]:
+    """One clip, with its measures beside those of the library.
 
     fields: Members of each item, with commas between them, as in `id,name`; of the clip of a hit
         as in `score,clip.id`. Default: all. Other members are then left out, even if the schema
         of the answer requires them.
     """
-    from kinedex.types.clips import Clip
+    from kinedex.types.measures import MeasuredClip
 
     return Call(
         "get_clip",
         "GET",
         path_of("/v1/clips/{clip_id}", clip_id=clip_id),
-        record(Clip),
+        record(MeasuredClip),
         query=given(fields=fields),
     )
 

@@ -264,6 +264,7 @@ def get_annotation_table(
     not_source: str | Sequence[str] | None = None,
     folder: str | Sequence[str] | None = None,
     not_folder: str | Sequence[str] | None = None,
+    collection: str | Sequence[str] | None = None,
     min_duration: float | None = None,
     max_duration: float | None = None,
     min_frame_rate: float | None = None,
@@ -282,6 +283,7 @@ def get_annotation_table(
 ) -> Call[bytes]:
     """The annotations of clips by path, as an `annotations.csv` that an import reads again.
 
+    task: Kinds of it too, as of a word (`/v1/labels/tree`); none with = before it.
     not_person: Clips of none of these persons.
     not_task: Clips of none of these tasks.
     not_word: Clips with none of these words.
@@ -289,6 +291,7 @@ def get_annotation_table(
     not_source: Clips from none of these sources.
     folder: Clips whose files were in this folder of an import, or below it.
     not_folder: Clips of none of these folders.
+    collection: Ids of collections: clips in any of them.
     min_duration: Seconds.
     max_duration: Seconds.
     min_frame_rate: Frames per second.
@@ -324,6 +327,7 @@ def get_annotation_table(
             not_source=not_source,
             folder=folder,
             not_folder=not_folder,
+            collection=collection,
             min_duration=min_duration,
             max_duration=max_duration,
             min_frame_rate=min_frame_rate,

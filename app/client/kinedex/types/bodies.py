@@ -8,6 +8,17 @@ from typing import Any, Literal, NotRequired, TypedDict
 from kinedex.types.choices import EditKind, Method
 
 
+class AcceptedSpan(TypedDict):
+    """The part of a suggestion that is accepted.
+
+    start: Start of the part, seconds from the start of the clip.
+    end: End of the part, seconds.
+    """
+
+    start: float
+    end: float
+
+
 class CollectionItemForm(TypedDict):
     """A clip, or a part of it, to add to a collection.
 
@@ -21,22 +32,13 @@ class CollectionItemForm(TypedDict):
     notes: NotRequired[str]
 
 
-class AcceptedSpan(TypedDict):
-    """The part of a suggestion that is accepted.
-
-    start: Start of the part, seconds from the start of the clip.
-    end: End of the part, seconds.
-    """
-
-    start: float
-    end: float
-
-
 class Filter(TypedDict):
     """Filters of the clips before they are ranked. A clip must pass all given filters.
 
     `meta.KEY=VALUE` filters by the metadata of the clips, `not_meta.KEY=VALUE` leaves clips with
     that value out, and `meta.KEY.min=30`, `meta.KEY.max=40` filter by a number.
+    `measure.NAME.min` and `measure.NAME.max` are bounds of a measure of `GET /v1/measures`, as in
+    `measure.foot_skate.max=0.1`.
 
     task: Kinds of it too, as of a word (`/v1/labels/tree`); none with = before it.
     not_person: Clips of none of these persons.
@@ -92,25 +94,6 @@ class Filter(TypedDict):
     max_tempo: NotRequired[float | None]
 
 
-class NewAnnotation(TypedDict):
-    """What is said about a part of a clip. It has words, a person or a text.
-
-    start: Start of the part, seconds from the start of the clip.
-    end: End of the part, seconds.
-    words: What happens in the part. A phrase is one word, joined by underscores (`left_leg`).
-    person: Who moves in the part, if it is not the person of the clip.
-    text: A sentence that describes the part.
-    by: Who said it.
-    """
-
-    start: float
-    end: float
-    words: NotRequired[Sequence[str]]
-    person: NotRequired[str | None]
-    text: NotRequired[str | None]
-    by: NotRequired[str | None]
-
-
 class SearchExample(TypedDict):
     """A stored clip, or a part of it, that hits must be like, or must not be like.
 
@@ -150,6 +133,25 @@ class ComposedSearch(TypedDict):
     cursor: NotRequired[str | None]
     examples: NotRequired[Sequence[SearchExample]]
     words: NotRequired[Sequence[str]]
+
+
+class NewAnnotation(TypedDict):
+    """What is said about a part of a clip. It has words, a person or a text.
+
+    start: Start of the part, seconds from the start of the clip.
+    end: End of the part, seconds.
+    words: What happens in the part. A phrase is one word, joined by underscores (`left_leg`).
+    person: Who moves in the part, if it is not the person of the clip.
+    text: A sentence that describes the part.
+    by: Who said it.
+    """
+
+    start: float
+    end: float
+    words: NotRequired[Sequence[str]]
+    person: NotRequired[str | None]
+    text: NotRequired[str | None]
+    by: NotRequired[str | None]
 
 
 class Step(TypedDict):

@@ -98,6 +98,12 @@ Method: TypeAlias = Literal[
 ]
 
 
+OutlierReason: TypeAlias = Literal["far", "swapped"]
+
+
+PairKind: TypeAlias = Literal["exact", "copy", "rate", "format", "cut", "mirror", "similar"]
+
+
 Reanalysis: TypeAlias = Literal["queued", "processing", "failed"]
 
 

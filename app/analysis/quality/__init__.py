@@ -1,0 +1,1 @@
+"""Measures of a clip by which people keep a library clean."""

@@ -1,0 +1,197 @@
+"""Calls: curation. Generated from the OpenAPI description by `make client`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from kinedex.call import Call, nothing, path_of, record
+from kinedex.sent import given
+
+if TYPE_CHECKING:
+    from kinedex.types.bodies import Filter
+    from kinedex.types.choices import OutlierReason, PairKind
+    from kinedex.types.clips import Clip
+    from kinedex.types.curation import DuplicateGroups, OutlierList
+
+
+def list_duplicates(
+    *,
+    threshold: float | None = None,
+    kind: PairKind | None = None,
+    limit: int | None = None,
+    cursor: str | None = None,
+) -> Call[DuplicateGroups]:
+    """Groups of near-duplicates, each with a clip to keep and the evidence of each pair.
+
+    Kinds: `exact` the same poses; `copy` with noise or another cleaning; `rate` and `format` the
+        same take at another frame rate, in another format or with another skeleton; `cut` a
+        part; `mirror` left and right exchanged; `similar` another take within `threshold`. A
+        worker compares new clips when it is idle: `pending` clips still wait.
+
+    threshold: Largest distance of two takes that count as almost the same. 0: only copies of one
+        take. 0.1: takes that hardly anybody can tell apart. Default: 0.0.
+    kind: Only pairs of this kind.
+    limit: Maximum number of items in all; None lists all.
+    cursor: Where the list starts: `next` of an earlier page.
+    """
+    from kinedex.types.curation import DuplicateGroups
+
+    return Call(
+        "list_duplicates",
+        "GET",
+        "/v1/duplicates",
+        record(DuplicateGroups),
+        query=given(threshold=threshold, kind=kind, limit=limit, cursor=cursor),
+    )
+
+
+def dismiss_duplicates(group_id: str, *, threshold: float | None = None) -> Call[None]:
+    """These clips are no duplicates: no list shows these pairs again.
+
+    `threshold` must be that of the list that showed the group.
+
+    threshold: Largest distance of two takes that count as almost the same. 0: only copies of one
+        take. 0.1: takes that hardly anybody can tell apart. Default: 0.0.
+    """
+    return Call(
+        "dismiss_duplicates",
+        "POST",
+        path_of("/v1/duplicates/{group_id}/dismiss", group_id=group_id),
+        nothing,
+        query=given(threshold=threshold),
+    )
+
+
+def list_outliers(
+    *,
+    person: str | Sequence[str] | None = None,
+    task: str | Sequence[str] | None = None,
+    word: str | Sequence[str] | None = None,
+    license: str | Sequence[str] | None = None,
+    source: str | Sequence[str] | None = None,
+    not_person: str | Sequence[str] | None = None,
+    not_task: str | Sequence[str] | None = None,
+    not_word: str | Sequence[str] | None = None,
+    not_license: str | Sequence[str] | None = None,
+    not_source: str | Sequence[str] | None = None,
+    folder: str | Sequence[str] | None = None,
+    not_folder: str | Sequence[str] | None = None,
+    collection: str | Sequence[str] | None = None,
+    min_duration: float | None = None,
+    max_duration: float | None = None,
+    min_frame_rate: float | None = None,
+    max_frame_rate: float | None = None,
+    min_joints: float | None = None,
+    max_joints: float | None = None,
+    min_travel: float | None = None,
+    max_travel: float | None = None,
+    min_speed: float | None = None,
+    max_speed: float | None = None,
+    min_energy: float | None = None,
+    max_energy: float | None = None,
+    min_tempo: float | None = None,
+    max_tempo: float | None = None,
+    limit: int | None = None,
+    filter: Filter | Mapping[str, Any] | None = None,
+) -> Call[OutlierList]:
+    """Clips that differ from the others with their task: wrong labels, or faults.
+
+    `far`: the clip is far from the task's other clips; `suggested` is the task of the clips that
+        are nearer. `swapped`: it moves the other side than the task's clips do.
+
+    task: Kinds of it too, as of a word (`/v1/labels/tree`); none with = before it.
+    not_person: Clips of none of these persons.
+    not_task: Clips of none of these tasks.
+    not_word: Clips with none of these words.
+    not_license: Clips with none of these licenses.
+    not_source: Clips from none of these sources.
+    folder: Clips whose files were in this folder of an import, or below it.
+    not_folder: Clips of none of these folders.
+    collection: Ids of collections: clips in any of them.
+    min_duration: Seconds.
+    max_duration: Seconds.
+    min_frame_rate: Frames per second.
+    max_frame_rate: Frames per second.
+    min_joints: Number of joints.
+    max_joints: Number of joints.
+    min_travel: Meters that the hips travel over the floor, forth and back.
+    max_travel: Meters that the hips travel over the floor, forth and back.
+    min_speed: Mean speed of the hips over the floor, meters per second.
+    max_speed: Mean speed of the hips over the floor, meters per second.
+    min_energy: Mean energy: root mean square speed of the joints, body lengths per second.
+    max_energy: Mean energy: root mean square speed of the joints, body lengths per second.
+    min_tempo: Beats per minute.
+    max_tempo: Beats per minute.
+    limit: Maximum number of items in one answer. Default: 10.
+    filter: Filters by name, as in a search, for those that are no arguments: {"meta.condition":
+        "tired", "meta.age.min": 30}.
+    """
+    from kinedex.types.curation import OutlierList
+
+    return Call(
+        "list_outliers",
+        "GET",
+        "/v1/outliers",
+        record(OutlierList),
+        query=given(
+            person=person,
+            task=task,
+            word=word,
+            license=license,
+            source=source,
+            not_person=not_person,
+            not_task=not_task,
+            not_word=not_word,
+            not_license=not_license,
+            not_source=not_source,
+            folder=folder,
+            not_folder=not_folder,
+            collection=collection,
+            min_duration=min_duration,
+            max_duration=max_duration,
+            min_frame_rate=min_frame_rate,
+            max_frame_rate=max_frame_rate,
+            min_joints=min_joints,
+            max_joints=max_joints,
+            min_travel=min_travel,
+            max_travel=max_travel,
+            min_speed=min_speed,
+            max_speed=max_speed,
+            min_energy=min_energy,
+            max_energy=max_energy,
+            min_tempo=min_tempo,
+            max_tempo=max_tempo,
+            limit=limit,
+        )
+        | given(**(filter or {})),
+    )
+
+
+def accept_outlier(clip_id: str, reason: OutlierReason, *, task: str | None = None) -> Call[Clip]:
+    """The label is wrong: the clip gets the suggested task, or the one that is sent.
+
+    For the reason `swapped`, the sides in the clip's words are exchanged too.
+
+    task: Default: the suggested task.
+    """
+    from kinedex.types.clips import Clip
+
+    return Call(
+        "accept_outlier",
+        "POST",
+        path_of("/v1/outliers/{clip_id}/accept", clip_id=clip_id),
+        record(Clip),
+        json=given(reason=reason, task=task),
+    )
+
+
+def dismiss_outlier(clip_id: str, reason: OutlierReason) -> Call[None]:
+    """The label is right: no list shows the clip for this reason while it has this task."""
+    return Call(
+        "dismiss_outlier",
+        "POST",
+        path_of("/v1/outliers/{clip_id}/dismiss", clip_id=clip_id),
+        nothing,
+        json=given(reason=reason),
+    )

@@ -1,0 +1,1 @@
+"""Near-duplicates: clips that show the same take, or almost the same motion."""

@@ -1,0 +1,1 @@
+"""Clips that differ from the others with their label."""

@@ -1,0 +1,1 @@
+"""Curation: measures, near-duplicates, outliers within a label, and licenses."""

@@ -1,0 +1,1 @@
+"""What curation finds and what people decide about it."""
