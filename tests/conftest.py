@@ -10,6 +10,7 @@ from tempfile import gettempdir
 import pytest
 from hypothesis import HealthCheck, settings
 
+from tests import databases
 from tests.live import Live, serve, serve_demo
 
 # WordNet takes seconds to load, in every fit of every library; its own test sets this to true.
@@ -24,6 +25,48 @@ os.environ["NUMBA_CACHE_DIR"] = str(_COMPILED)
 # On a busy machine every example takes long, and that says nothing about the code.
 settings.register_profile("busy", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("busy")
+
+
+ON_BOTH = ("store",)
+"""Folders of tests that run on both kinds of databases. Elsewhere a module says so by a mark."""
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """Lets a test run on SQLite, on PostgreSQL, or on both: see `tests.databases`."""
+    marks = {mark.name for mark in metafunc.definition.iter_markers()}
+    is_on_both = "both_databases" in marks or metafunc.definition.path.parent.relative_to(
+        Path(__file__).parent
+    ).parts[:1] in {(name,) for name in ON_BOTH}
+    kinds = [databases.kind()]
+    if "sqlite_only" in marks:
+        kinds = [databases.SQLITE]
+    elif "postgresql_only" in marks:
+        kinds = [databases.POSTGRESQL]
+    elif is_on_both and databases.is_sqlite():
+        kinds = [databases.SQLITE, databases.POSTGRESQL]
+    if kinds != [databases.SQLITE]:
+        metafunc.fixturenames.append("database_kind")
+        metafunc.parametrize("database_kind", kinds, indirect=True, scope="module")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def database_kind(request: pytest.FixtureRequest) -> Iterator[str]:
+    """The kind of the databases that the tests of a module make."""
+    chosen: str = getattr(request, "param", databases.SQLITE)
+    with databases.of_kind(chosen):
+        yield chosen
+
+
+@pytest.fixture(autouse=True)
+def _databases() -> Iterator[None]:
+    with databases.released():
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _database_server() -> Iterator[None]:
+    yield
+    databases.end()
 
 
 @pytest.fixture(scope="session")

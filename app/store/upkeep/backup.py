@@ -5,6 +5,9 @@ Files never change, because their names are the hashes of their content, so they
 and after the snapshot. A file that was deleted meanwhile is missing in the copy. Then the database
 is copied again, until no file is missing.
 
+The copy of a PostgreSQL database is a dump (`dump`) beside the files; `kinedex db restore` loads it
+into an empty database.
+
 The database may have the schema of an earlier version: a copy is made before each upgrade. Then the
 copy has this schema too, and is upgraded as the library is.
 
@@ -34,6 +37,8 @@ from app.store.files.locked_file import locked_folder, remove_if_abandoned
 from app.store.folders import make_private_synced, sync_folder
 from app.store.jobs import references, removals
 from app.store.store import Store
+from app.store.upkeep import dump
+from app.store.upkeep.dump import DUMP
 
 DATABASE, FILES = "kinedex.sqlite3", "files"
 """Names in a data directory."""
@@ -71,12 +76,13 @@ class _Files:
 def back_up(store: Store, path: Path, progress: Progress | None = None) -> Backup:
     """Copies the library to `path`, which appears only when the copy is complete and on disk.
 
-    Raises BadField if `path` exists or nothing can be written there; ConfigurationError for a
-    database that is not SQLite; DiskFull; DatabaseDamaged; StorageError, which names each missing
-    or damaged file of the library. Then no part of the copy is left. If the process is killed, the
-    next copy in the same folder removes the unfinished one.
+    Raises BadField if `path` exists or nothing can be written there; ConfigurationError if the
+    programs that dump a PostgreSQL database are not installed; DiskFull; DatabaseDamaged;
+    StorageError, which names each missing or damaged file of the library. Then no part of the copy
+    is left. If the process is killed, the next copy in the same folder removes the unfinished one.
     """
-    store.database.check_copyable()
+    if not store.database.is_sqlite:
+        dump.check_programs()
     if os.path.lexists(path):
         message = f"{path} is there already: a copy never replaces anything"
         raise BadField(f"path: {message}", places=[Place("path", message)])
@@ -106,7 +112,7 @@ def _is_unfinished_copy(part: Path) -> bool:
         names = {each.name.partition("-")[0] for each in part.iterdir()}  # without "-wal"
     except OSError:
         return False
-    return names <= {DATABASE, FILES}
+    return names <= {DATABASE, DUMP, FILES}
 
 
 def _copy_and_rename(store: Store, part: Path, path: Path, progress: Progress | None) -> Backup:
@@ -137,7 +143,7 @@ def _copy(store: Store, part: Path, progress: Progress | None) -> frozenset[str]
     _add(files, needed, progress)
     lost: set[str] = set()
     for _ in range(MAX_TRIES):
-        needed, lost_before = _copy_database(store.database, part / DATABASE), lost
+        needed, lost_before = _copy_database(store.database, part), lost
         _add(files, needed, progress)
         lost = files.missing | files.damaged
         if not lost:
@@ -159,11 +165,15 @@ def _incomplete(files: _Files) -> StorageError:
     )
 
 
-def _copy_database(database: Database, path: Path) -> frozenset[str]:
+def _copy_database(database: Database, part: Path) -> frozenset[str]:
     """Copies the database and replaces an earlier copy; returns the names of the files it needs.
 
     Raises DatabaseDamaged, because the copy has the same pages as the original, and its damage.
     """
+    if not database.is_sqlite:
+        (part / DUMP).unlink(missing_ok=True)
+        return dump.dump(database, part / DUMP)
+    path = part / DATABASE
     path.unlink(missing_ok=True)
     database.copy_to(path)
     copy = Database.at(path)

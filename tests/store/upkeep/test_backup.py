@@ -307,7 +307,7 @@ def test_a_library_in_use_is_copied_as_it_was_at_one_moment(
 def test_another_database_is_refused(
     store: Store, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(store.database, "_is_sqlite", False)
+    monkeypatch.setattr(store.database, "is_sqlite", False)
     with pytest.raises(ConfigurationError, match="pg_dump"):
         back_up(store, tmp_path / "copy")
     assert not (tmp_path / "copy").exists()
