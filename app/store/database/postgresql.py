@@ -43,6 +43,7 @@ _BEGIN = {
 }
 _DISK_FULL, _LOCKED, _CANCELED = "53100", "55P03", "57014"
 _DAMAGED = ("XX001", "XX002")
+_NOT_ALLOWED = "42501"
 _UNUSABLE_CLASSES = ("08", "28", "3D", "53", "57", "58")
 """Classes of SQLSTATE: connection, authorization, no such database, resources, operator, system."""
 _ENDED_BY_SERVER = ("25P03", "25P04", "25006", "40001", "40P01")
@@ -103,7 +104,7 @@ def failure_of(error: BaseException | None) -> StorageError | None:
         return StorageError("The database stayed locked by another writer")
     if state == _CANCELED:
         return StorageError("The database stopped a statement, because it took too long")
-    if state in _ENDED_BY_SERVER or (state or "")[:2] in _UNUSABLE_CLASSES:
+    if state in (_NOT_ALLOWED, *_ENDED_BY_SERVER) or (state or "")[:2] in _UNUSABLE_CLASSES:
         return StorageError(f"The database cannot be used: {_message(error)}")
     # psycopg names no state if there is no connection, or none any more.
     if state is None and type(error).__name__ in ("OperationalError", "ConnectionTimeout"):

@@ -20,7 +20,8 @@ from __future__ import annotations
 import os
 import shutil
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -143,16 +144,36 @@ def _copy(store: Store, part: Path, progress: Progress | None) -> frozenset[str]
     _add(files, needed, progress)
     lost: set[str] = set()
     for _ in range(MAX_TRIES):
-        needed, lost_before = _copy_database(store.database, part), lost
-        _add(files, needed, progress)
-        lost = files.missing | files.damaged
-        if not lost:
-            for sha256 in frozenset(files.target) - needed:
-                files.target.remove(sha256)
-            return needed
+        lost_before = lost
+        with _moment_of(store.database, part) as moment:
+            _add(files, moment.needed, progress)
+            lost = files.missing | files.damaged
+            if not lost:
+                moment.finish()
+                for sha256 in frozenset(files.target) - moment.needed:
+                    files.target.remove(sha256)
+                return moment.needed
         if lost == lost_before:  # the library itself lacks them: another copy would not help
             break
     raise _incomplete(files)
+
+
+@dataclass(frozen=True, slots=True)
+class _Moment:
+    """A moment of the database. needed: the names of its files; finish: completes its copy."""
+
+    needed: frozenset[str]
+    finish: Callable[[], None]
+
+
+@contextmanager
+def _moment_of(database: Database, part: Path) -> Iterator[_Moment]:
+    """The present moment. A dump takes long, so it waits for `finish`: the files are there then."""
+    if database.is_sqlite:
+        yield _Moment(_copy_database(database, part / DATABASE), lambda: None)
+    else:
+        with dump.snapshot(database) as taken:
+            yield _Moment(taken.needed, partial(taken.dump, part / DUMP))
 
 
 def _incomplete(files: _Files) -> StorageError:
@@ -165,15 +186,11 @@ def _incomplete(files: _Files) -> StorageError:
     )
 
 
-def _copy_database(database: Database, part: Path) -> frozenset[str]:
+def _copy_database(database: Database, path: Path) -> frozenset[str]:
     """Copies the database and replaces an earlier copy; returns the names of the files it needs.
 
     Raises DatabaseDamaged, because the copy has the same pages as the original, and its damage.
     """
-    if not database.is_sqlite:
-        (part / DUMP).unlink(missing_ok=True)
-        return dump.dump(database, part / DUMP)
-    path = part / DATABASE
     path.unlink(missing_ok=True)
     database.copy_to(path)
     copy = Database.at(path)

@@ -9,14 +9,18 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
+from typing import NoReturn
 
 from sqlalchemy import func, select
 from sqlalchemy.engine import URL
 
-from app.errors import ConfigurationError, DiskFull, StorageError
-from app.store.database import postgresql
+from app.errors import BadField, ConfigurationError, DiskFull, StorageError
+from app.kinedex_error import Place
+from app.store.database import postgresql, schema
 from app.store.database.engine import Database
 from app.store.database.tables import file_removals
 from app.store.jobs import references
@@ -39,46 +43,61 @@ def check_programs() -> None:
         )
 
 
-def dump(database: Database, path: Path) -> frozenset[str]:
-    """Dumps one snapshot into a new file; returns the names of the files that it needs.
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """A moment of the database. needed: the names of the files that it needs."""
 
-    Raises ConfigurationError, DiskFull, StorageError.
-    """
-    check_programs()
-    with database.read() as tx:
-        postgresql.lift_time_limits(tx)
-        snapshot = tx.execute(select(func.pg_export_snapshot())).scalar_one()
+    needed: frozenset[str]
+    _url: URL
+    _name: str
+
+    def dump(self, path: Path) -> None:
+        """Dumps this moment into a new file. Raises DiskFull, StorageError."""
         _run(
             DUMP_PROGRAM,
-            database.engine.url,
+            self._url,
             "--format=custom",
             "--no-owner",
             "--no-privileges",
-            f"--snapshot={snapshot}",
+            f"--snapshot={self._name}",
             # The copy has no files to remove, and a file that is stored there later must stay.
             f"--exclude-table-data={file_removals.name}",
             f"--file={path}",
         )
-        needed = references.referenced_in_any_schema(tx)
-    _check(path)
-    return needed
+        _check(path)
 
 
-def load(database: Database, path: Path) -> None:
-    """Loads a dump into an empty database, in one transaction.
+@contextmanager
+def snapshot(database: Database) -> Iterator[Snapshot]:
+    """The present moment of the database, as long as the block runs. Raises StorageError."""
+    with database.read() as tx:
+        postgresql.lift_time_limits(tx)
+        name = tx.execute(select(func.pg_export_snapshot())).scalar_one()
+        yield Snapshot(references.referenced_in_any_schema(tx), database.engine.url, name)
 
-    Raises ConfigurationError, DiskFull, StorageError; then the database is still empty.
+
+def restore(database_url: str, backup: Path) -> None:
+    """Loads the dump of a backup into an empty database, in one transaction.
+
+    Raises BadField without a dump, or if the database is not empty; ConfigurationError, DiskFull,
+    StorageError. Then the database stays as it is.
     """
+    if not (backup / DUMP).is_file():
+        _refuse("path", f"{backup} has no dump of a PostgreSQL database ({DUMP})")
+    if not schema.state(database_url).is_empty:
+        _refuse("database", "it is not empty: make a new one, and name it in KINEDEX_DATABASE_URL")
     check_programs()
-    _run(
-        LOAD_PROGRAM,
-        database.engine.url,
-        "--no-owner",
-        "--no-privileges",
-        "--exit-on-error",
-        "--single-transaction",
-        str(path),
-    )
+    database = Database(database_url)
+    try:
+        url = database.engine.url
+    finally:
+        database.close()
+    options = ("--no-owner", "--no-privileges", "--exit-on-error", "--single-transaction")
+    _run(LOAD_PROGRAM, url, *options, str(backup / DUMP))
+
+
+def _refuse(field: str, message: str) -> NoReturn:
+    raise BadField(f"{field}: {message}", places=[Place(field, message)])
 
 
 def _check(path: Path) -> None:
