@@ -41,6 +41,8 @@ _BEGIN = {
         f" '{round(1000 * HUNG_WRITER_S)}', true), pg_advisory_xact_lock({WRITER_LOCK})"
     ),
 }
+# The transaction's first query may be streamed, and then its options are the connection's.
+_AT_ONCE = {"stream_results": False, "yield_per": None}
 _DISK_FULL, _LOCKED, _CANCELED = "53100", "55P03", "57014"
 _DAMAGED = ("XX001", "XX002")
 _NOT_ALLOWED = "42501"
@@ -88,7 +90,7 @@ def open_engine(url: URL, common: dict[str, Any], options: ServerOptions) -> Eng
     def _begin(connection: Connection) -> None:
         statement = _BEGIN.get(access_of(connection) or Access.WRITE_ROW)
         if statement is not None:
-            connection.exec_driver_sql(statement)
+            connection.exec_driver_sql(statement, execution_options=_AT_ONCE)
 
     return engine
 

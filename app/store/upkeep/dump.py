@@ -28,6 +28,8 @@ from app.store.jobs import references
 DUMP = "kinedex.dump"
 """Name of the file in a backup."""
 DUMP_PROGRAM, LOAD_PROGRAM = "pg_dump", "pg_restore"
+MAX_LINES = 3
+"""Lines of what a program says that are repeated."""
 _NO_SPACE = "No space left on device"
 
 
@@ -143,5 +145,5 @@ def _finish(command: Sequence[str], environment: Mapping[str, str]) -> None:
         return
     if _NO_SPACE in ended.stderr:
         raise DiskFull
-    name, lines = Path(command[0]).name, ended.stderr.strip().splitlines()
-    raise StorageError(f"{name} failed: {lines[-1] if lines else 'it gave no reason'}")
+    said = "; ".join(ended.stderr.strip().splitlines()[:MAX_LINES])
+    raise StorageError(f"{Path(command[0]).name} failed: {said or 'it gave no reason'}")

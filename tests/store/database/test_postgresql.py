@@ -136,6 +136,12 @@ def test_states_of_sql_mean_failures_of_the_store(
     assert "a row" not in str(found)
 
 
+def test_the_first_query_of_a_transaction_may_be_streamed(store: Store) -> None:
+    with store.read() as tx:
+        rows = tx.execution_options(yield_per=2).execute(text("SELECT generate_series(1, 5)"))
+        assert [row[0] for row in rows] == [1, 2, 3, 4, 5]
+
+
 def test_another_kind_of_database_is_refused() -> None:
     with pytest.raises(ConfigurationError, match="SQLite and PostgreSQL"):
         Database("mysql://somewhere/kinedex")
