@@ -98,7 +98,7 @@ test: lint
 # The second run: the same services, API, worker and deaths of processes with PostgreSQL.
 test-all: lint
 	$(BIN)/pytest -m "not bench"
-	KINEDEX_TESTS_DATABASE=postgresql $(BIN)/pytest -m "not bench" $(addprefix tests/,$(WITH_DATABASE))
+	TESTS_DATABASE=postgresql $(BIN)/pytest -m "not bench" $(addprefix tests/,$(WITH_DATABASE))
 
 $(BENCH_STAMP): $(STAMP)
 	$(PYTHON) -m pip --python $(BIN)/python install --quiet --disable-pip-version-check \

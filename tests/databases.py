@@ -5,7 +5,7 @@ needs one; it listens on a socket in a folder of its own, and it ends with the p
 sync, since no test cuts the power.
 
 A test asks for a database by the folder of its library (`url_for`) and need not know the kind. The
-kind is the one of `KINEDEX_TESTS_DATABASE`, unless the test's module runs on both: see
+kind is the one of `TESTS_DATABASE`, unless the test's module runs on both: see
 `pytest_generate_tests` in `tests/conftest.py`.
 """
 
@@ -36,7 +36,7 @@ from app.config import sqlite_url
 from app.store.database import schema
 
 SQLITE, POSTGRESQL = "sqlite", "postgresql"
-KIND_VARIABLE = "KINEDEX_TESTS_DATABASE"
+KIND_VARIABLE = "TESTS_DATABASE"
 """Names the database of all tests: `postgresql`, or `sqlite`, the default."""
 
 _ADMIN = "postgres"

@@ -31,7 +31,7 @@ from tests.live import NET_S, NO_TLS, _free_port, wait_until
 
 pytestmark = [pytest.mark.slow, pytest.mark.postgresql_only]
 
-KILLS = int(os.environ.get("KINEDEX_TESTS_KILLS", "20"))
+KILLS = int(os.environ.get("TESTS_KILLS", "20"))
 SECONDS_BETWEEN = 2.0
 SEED = 20
 API, WORKER = "app.api.server", "app.worker"

@@ -12,12 +12,12 @@ from sqlalchemy import select
 from app.config import sqlite_url
 from app.errors import ConfigurationError, DiskFull, StorageError
 from app.store.clips import versions as library
-from app.store.clips.repository import add_or_get
+from app.store.clips.repository import add_or_get, get, set_failed
 from app.store.database import engine, postgresql, sqlite
 from app.store.database.engine import Database
 from app.store.database.tables import clips
 from app.store.store import Store
-from tests.store.conftest import new_clip
+from tests.store.conftest import AddClip, new_clip
 
 
 @pytest.mark.sqlite_only
@@ -106,6 +106,17 @@ def test_a_lock_that_is_not_released_in_time_is_a_storage_error(
             with pytest.raises(StorageError, match="this process"), store.write():
                 pass
     other.close()
+
+
+def test_a_nul_that_a_file_holds_becomes_a_mark_in_json(store: Store, add_clip: AddClip) -> None:
+    """PostgreSQL cannot read it. A backslash before the same letters stays as it is."""
+    clip = add_clip("walk")
+    problem = {"detail": "joint a\0b", "more": [{"c\0": 1}, "d\\u0000"]}
+    with store.write() as tx:
+        set_failed(tx, clip.id, problem)
+    with store.read() as tx:
+        found = get(tx, clip.id).error
+    assert found == {"detail": "joint a\ufffdb", "more": [{"c\ufffd": 1}, "d\\u0000"]}
 
 
 @pytest.mark.sqlite_only

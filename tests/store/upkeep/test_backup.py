@@ -20,7 +20,7 @@ import pytest
 from sqlalchemy import insert, select
 
 from app.config import sqlite_url
-from app.errors import BadField, ConfigurationError, DatabaseDamaged, StorageError
+from app.errors import BadField, DatabaseDamaged, StorageError
 from app.store import identity
 from app.store.clips import repository as clips
 from app.store.clips import versions as library
@@ -324,42 +324,3 @@ def test_a_library_in_use_is_copied_as_it_was_at_one_moment(
         new = sorted(int(name.split()[1]) for name in names if name.startswith("new"))
         assert len(new) <= 4
         assert new == [new[0] + place for place in range(len(new))]
-
-
-@pytest.mark.postgresql_only
-def test_without_the_programs_of_postgresql_nothing_is_copied(
-    store: Store, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(ConfigurationError, match="pg_dump and pg_restore"):
-        back_up(store, tmp_path / "copy")
-    assert not (tmp_path / "copy").exists()
-
-
-@pytest.mark.postgresql_only
-def test_what_a_program_says_is_reported_and_no_copy_is_left(
-    store: Store, add: Add, tmp_path: Path
-) -> None:
-    add("walk")
-    with store.write() as tx:
-        tx.exec_driver_sql("CREATE ROLE stranger LOGIN")
-    stranger = store.database.engine.url.set(username="stranger")
-    other = Store.open(stranger.render_as_string(hide_password=False), store.files.root)
-    with pytest.raises(StorageError, match="permission denied"):
-        back_up(other, tmp_path / "copy")
-    assert not [name for name in tmp_path.iterdir() if "copy" in name.name]
-    other.close()
-    with store.write() as tx:
-        tx.exec_driver_sql("DROP ROLE stranger")
-
-
-@pytest.mark.postgresql_only
-def test_a_dump_is_loaded_only_into_an_empty_database(
-    store: Store, add: Add, database_url: str, tmp_path: Path
-) -> None:
-    add("walk")
-    made = back_up(store, tmp_path / "copy")
-    with pytest.raises(BadField, match="not empty"):
-        dump.restore(database_url, made.path)
-    with pytest.raises(BadField, match="no dump"):
-        dump.restore(databases.url_for(tmp_path / "new", is_empty=True), tmp_path)
