@@ -16,12 +16,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import httpx2
 import psutil
 import pytest
-from sqlalchemy import func, select
+from sqlalchemy import select
 
 from app.demo import DemoClip, demo_clips
 from app.store.database.tables import clip_arrays, clips, jobs
@@ -139,7 +138,7 @@ def _upload(replica: Replica, clip: DemoClip, sent: Sent) -> None:
 
 @pytest.fixture(scope="module")
 def many() -> list[DemoClip]:
-    return list(demo_clips(tasks=("kick", "wave"), takes=6))
+    return list(demo_clips(tasks=("kick", "wave"), takes=3))
 
 
 def test_nothing_is_lost_or_done_twice(tmp_path: Path, many: list[DemoClip]) -> None:
@@ -183,21 +182,10 @@ def _check(url: str, files: Path, sent: Sent) -> None:
     store = Store.open(url, files)
     with store.read() as tx:
         rows = tx.execute(select(clips.c.id, clips.c.state, clips.c.sha256)).all()
-        ingests: dict[Any, int] = dict(
-            tx.execute(
-                select(jobs.c.clip_id, func.count())
-                .where(jobs.c.kind == "ingest")
-                .group_by(jobs.c.clip_id)
-            )
-            .tuples()
-            .all()
-        )
+        of_clips = select(jobs.c.clip_id).where(jobs.c.kind == "ingest")
+        ingests = Counter(tx.execute(of_clips).scalars())
         open_jobs = tx.execute(select(jobs.c.id).where(jobs.c.owner.is_not(None))).all()
-        arrays: dict[Any, int] = dict(
-            tx.execute(select(clip_arrays.c.clip_id, func.count()).group_by(clip_arrays.c.clip_id))
-            .tuples()
-            .all()
-        )
+        arrays = Counter(tx.execute(select(clip_arrays.c.clip_id)).scalars())
         attempts = Counter(tx.execute(select(jobs.c.attempts)).scalars())
     store.close()
     assert {row.id for row in rows} == set(sent.acknowledged.values())
