@@ -24,7 +24,7 @@ NPM := cd $(WEB) && PATH="$(NODE_PATH)$$PATH" npm
 
 AUDIT := $(VENV)/audit
 AUDIT_STAMP := $(AUDIT)/.installed
-WITH_DATABASE := store services api worker faults search
+WITH_DATABASE := store worker
 UV := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-header \
   --no-annotate --constraint docker/constraints.txt
 
@@ -95,7 +95,7 @@ lint: install $(CHECKED)
 test: lint
 	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest --numprocesses=logical --maxprocesses=4 --dist=loadscope
 
-# The second run: the same services, API, worker and deaths of processes with PostgreSQL.
+# The second run: the tests of the store and of workers, with PostgreSQL only.
 test-all: lint
 	$(BIN)/pytest -m "not bench"
 	TESTS_DATABASE=postgresql $(BIN)/pytest -m "not bench" $(addprefix tests/,$(WITH_DATABASE))
