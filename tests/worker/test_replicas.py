@@ -131,6 +131,7 @@ def _upload(replica: Replica, clip: DemoClip, sent: Sent) -> None:
                 data={"person": clip.person, "task": clip.task},
             )
         except httpx2.TransportError:
+            time.sleep(0.05)
             return
     if answer.status_code in (200, 202):
         sent.acknowledged[clip.path] = answer.json()["clip"]["id"]
