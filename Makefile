@@ -24,6 +24,7 @@ NPM := cd $(WEB) && PATH="$(NODE_PATH)$$PATH" npm
 
 AUDIT := $(VENV)/audit
 AUDIT_STAMP := $(AUDIT)/.installed
+WITH_DATABASE := store worker
 UV := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-header \
   --no-annotate --constraint docker/constraints.txt
 
@@ -94,8 +95,10 @@ lint: install $(CHECKED)
 test: lint
 	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest --numprocesses=logical --maxprocesses=4 --dist=loadscope
 
+# The second run: the tests of the store and of workers, with PostgreSQL only.
 test-all: lint
 	$(BIN)/pytest -m "not bench"
+	TESTS_DATABASE=postgresql $(BIN)/pytest -m "not bench" $(addprefix tests/,$(WITH_DATABASE))
 
 $(BENCH_STAMP): $(STAMP)
 	$(PYTHON) -m pip --python $(BIN)/python install --quiet --disable-pip-version-check \
@@ -135,5 +138,5 @@ licenses: install
 # What the image is built from, with the SHA-256 of every package: after each change of a version.
 lock: install
 	$(PYTHON) -m pip --python $(BIN)/python install --quiet --disable-pip-version-check uv
-	$(UV) pyproject.toml --extra audio --extra plots --extra words -o docker/requirements.txt
+	$(UV) pyproject.toml --extra audio --extra plots --extra postgres --extra words -o docker/requirements.txt
 	printf 'setuptools\nnodejs-wheel-binaries\npip-audit\ncyclonedx-bom\n' | $(UV) - -o docker/tools.txt

@@ -18,13 +18,17 @@ from app.services.library.library import Library
 from app.services.training import models
 from app.store.clips.record import ClipRecord
 from app.worker.loop import run_worker
+from tests import databases
 
 ACTORS = ("ada", "bruno", "chika")
 TASKS = ("walk", "wave", "kick", "bow")
 
 
 def settings_for(folder: Path, **changes: Any) -> Settings:
-    return Settings(data_dir=folder / "data", **{"analysis_processes": 1, **changes})
+    values = {"analysis_processes": 1, **changes}
+    if not databases.is_sqlite():
+        values.setdefault("database_url", databases.url_for(folder))
+    return Settings(data_dir=folder / "data", **values)
 
 
 def work(settings: Settings) -> None:

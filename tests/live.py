@@ -17,6 +17,7 @@ from typing import Any
 import httpx2
 
 from app.demo import DemoClip, demo_clips
+from tests import databases
 
 ACTORS = ("ada", "bruno")
 TASKS = ("walk", "wave", "kick")
@@ -80,6 +81,8 @@ def serve(data_dir: Path, *, worker: bool = False, **settings: object) -> Iterat
     call meets the limit of its time, since a test may run on a busy machine.
     """
     settings = {"request_timeout_s": NET_S, "query_timeout_s": NET_S} | settings
+    if not databases.is_sqlite():
+        settings.setdefault("database_url", databases.url_for(data_dir))
     data_dir.mkdir(parents=True, exist_ok=True)
     port, log = _free_port(), data_dir.parent / f"{data_dir.name}.api.log"
     variables = {f"KINEDEX_{name.upper()}": str(value) for name, value in settings.items()}

@@ -29,7 +29,8 @@ def backup(
     """Copy the library into a new folder; the library may be in use.
 
     The copy is a data directory: to restore it, start Kinedex with KINEDEX_DATA_DIR set to it, or
-    to a copy of it. The database may still have the schema of an earlier version, as before an
+    to a copy of it. With PostgreSQL it holds a dump, which needs pg_dump on this machine; `kinedex
+    db restore` loads it. The database may still have the schema of an earlier version, as before an
     upgrade. The copy contains everything: also the hashed API keys, and clips that you delete from
     the library later.
     """

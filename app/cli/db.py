@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Annotated
+
 import typer
 
 from app.cli.settings import refuse_missing_library, settings_of
 
 program = typer.Typer(
-    help="Upgrade the database, or connect it to its files.", no_args_is_help=True
+    help="Upgrade or restore the database, or connect it to its files.", no_args_is_help=True
 )
 
 
@@ -24,6 +27,26 @@ def upgrade(context: typer.Context) -> None:
     identity.refuse_files_without_database(settings.database, settings.files_dir)
     state = schema.upgrade(settings.database)
     typer.echo(f"The database is at revision {state.current}.")
+
+
+@program.command("restore")
+def restore(
+    context: typer.Context,
+    path: Annotated[Path, typer.Argument(help="A folder that `kinedex backup` made.")],
+) -> None:
+    """Load the dump of a backup into an empty PostgreSQL database.
+
+    KINEDEX_DATABASE_URL names the database, and KINEDEX_DATA_DIR the backup or a copy of it, which
+    holds the files. A backup of an SQLite library needs no such command: start Kinedex on it.
+    """
+    from app.store.upkeep.dump import restore as restore_dump
+
+    settings = settings_of(context)
+    restore_dump(settings.database, path)
+    typer.echo(
+        f"The database of {path} is restored. Start Kinedex with KINEDEX_DATA_DIR set to {path}, or"
+        " to a copy of it; `kinedex verify` compares its files with the database."
+    )
 
 
 @program.command("adopt-files")

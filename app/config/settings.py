@@ -49,7 +49,22 @@ class Settings(BaseSettings):
         Path("data"), description="Directory of the database, the uploaded files and the demo."
     )
     database_url: SecretStr | None = Field(
-        None, description="SQLAlchemy URL of the database; unset: SQLite in the data directory."
+        None,
+        description="URL of a PostgreSQL database, as in `postgresql://kinedex@db/kinedex`; unset: "
+        "SQLite in the data directory.",
+    )
+    database_connections: int = Field(
+        40,
+        ge=2,
+        le=1000,
+        description="Most connections of one process to a PostgreSQL server. The server must allow "
+        "this number for each API process, and about four for each worker.",
+    )
+    database_statement_timeout_s: float = Field(
+        300.0,
+        ge=0,
+        le=DAY_S,
+        description="Seconds that PostgreSQL may take for one statement; 0: any time.",
     )
     host: str = Field(
         "127.0.0.1",

@@ -11,6 +11,7 @@ from typing import Self, TypeVar
 
 from app.errors import DiskFull, StorageError
 from app.store import audit, keyed_calls
+from app.store.database.access import ServerOptions
 from app.store.database.engine import ERASE_WAIT_S, Database, Tx
 from app.store.files.files import FileStore
 from app.store.files.reserve import Reserve
@@ -28,13 +29,19 @@ class Store:
     files: FileStore
 
     @classmethod
-    def open(cls, database_url: str, files_dir: Path, library_id: str | None = None) -> Self:
+    def open(
+        cls,
+        database_url: str,
+        files_dir: Path,
+        library_id: str | None = None,
+        options: ServerOptions | None = None,
+    ) -> Self:
         """Opens a store without a check; call `identity.prepare` or `identity.check` before.
 
         library_id: the id that they returned. With None, nothing checks later that the folder of
         files is the right one.
         """
-        database = Database(database_url)
+        database = Database(database_url, options=options)
         if library_id is not None:
             database.watch_file()
         return cls(database, FileStore(files_dir, library_id))

@@ -29,6 +29,7 @@ from app.services.training import models, refit
 from app.store.clips import repository as clips
 from app.store.clips.record import ClipRecord
 from app.store.database.engine import Tx
+from app.store.database.signals import Listener, Signal
 from app.store.jobs import leases, outcomes, owners, queue
 from app.store.jobs.abandoned_jobs import Watch
 from app.store.jobs.record import ClaimedJob, JobKind
@@ -58,6 +59,10 @@ WATCHES_PER_LEASE = 10
 """How often in the time of a lease a worker looks at the jobs of other workers."""
 _ONE_AT_A_TIME = (JobKind.FIT, JobKind.EVALUATE)
 """Kinds of jobs in a process of their own, which needs much memory."""
+LISTENING_POLL_S = 1.0
+"""Time after which an idle worker looks for work even without a signal: a job may be due again."""
+STOP_LOOK_S = 0.25
+"""How often a worker that waits for a signal looks whether it should stop."""
 STORE_PAUSE_S = 1.0
 """Time before another attempt after the store failed."""
 
@@ -112,11 +117,14 @@ class Worker:
         self._watch_s = min(settings.job_heartbeat_s, settings.job_lease_s / WATCHES_PER_LEASE)
         self._last_watch = -math.inf
         self._last_fit_check = 0.0
+        self._wake = threading.Event()
+        self._signals = Listener(lib.store.database, [Signal.QUEUE], self._wake.set)
         self._thresholds = LearnedThresholds(lib)
         self._expiry = Expiry(lib)
 
     def run(self, stop: threading.Event, until: Callable[[Library], bool] | None = None) -> None:
         """Work until `stop` is set, or until there is no job left and `until` returns True."""
+        self._signals.begin()
         while not stop.is_set():
             try:
                 self._beat_if_due()
@@ -136,6 +144,7 @@ class Worker:
 
     def close(self) -> None:
         """Put the running jobs back into the queue, and end the processes."""
+        self._signals.end()
         for running in self._running:
             running.stop()
         # An import's thread must have stopped before another worker goes on with it.
@@ -196,7 +205,7 @@ class Worker:
         for running in list(self._running):
             progress, detail = running.progress()
             try:
-                with self.lib.store.write() as tx:
+                with self.lib.store.database.write_row() as tx:
                     is_canceled = leases.heartbeat(
                         tx,
                         running.claimed.lease,
@@ -290,7 +299,10 @@ class Worker:
         """Wait until jobs finish, or until it is time to look for work again."""
         pause = self.lib.settings.job_poll_s
         if not self._running:
-            stop.wait(pause)
+            if self._signals.is_listening:
+                self._wait_for_signal(stop, max(pause, LISTENING_POLL_S))
+            else:
+                stop.wait(pause)
             return
         wait(_futures(self._running), timeout=pause, return_when=FIRST_COMPLETED)
         self._gather()
@@ -304,6 +316,14 @@ class Worker:
             if are_none_done or len(futures) <= KEPT_BUSY * self.executors.slots:
                 return
             wait(futures, timeout=left, return_when=FIRST_COMPLETED)
+
+    def _wait_for_signal(self, stop: threading.Event, seconds: float) -> None:
+        """Wait until a job is queued, at most so long."""
+        deadline = time.monotonic() + seconds
+        while not stop.is_set() and (left := deadline - time.monotonic()) > 0:
+            if self._wake.wait(min(left, STOP_LOOK_S)):
+                break
+        self._wake.clear()
 
 
 def _futures(running: Iterable[RunningJob]) -> list[Future[Any]]:

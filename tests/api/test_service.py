@@ -15,6 +15,7 @@ from app.config import load_settings
 from app.store import keys
 from app.store.key_role import KeyRole
 from app.store.store import Store
+from tests import databases
 from tests.api.conftest import assert_problem
 from tests.live import NET_S, Live, serve, wait_until
 
@@ -171,7 +172,7 @@ def locked(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Live, dic
 
 
 def _make_keys(data_dir: Path) -> dict[KeyRole, str]:
-    settings = load_settings(data_dir=data_dir)
+    settings = load_settings(data_dir=data_dir, database_url=databases.url_for(data_dir))
     store = Store.open(settings.database, settings.files_dir)
     with store.write() as tx:
         made = {role: keys.create(tx, role, role.value).secret for role in KeyRole}

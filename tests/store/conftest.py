@@ -1,4 +1,4 @@
-"""A store on a real SQLite database, which is made once and copied for each test."""
+"""A store on a real database, which is made once and copied for each test."""
 
 from __future__ import annotations
 
@@ -12,26 +12,28 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, settings
 
+from app.config import sqlite_url
 from app.store.clips import repository as clips
 from app.store.clips.record import ClipFacts, ClipLabels, ClipRecord, ClipWarning, NewClip
 from app.store.database import schema
 from app.store.jobs import repository as jobs
 from app.store.jobs.record import JobKind, JobRecord, NewJob
 from app.store.store import Store
+from tests import databases
 
 
 @pytest.fixture(scope="session")
 def empty_database(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("database") / "empty.sqlite3"
-    schema.upgrade(f"sqlite:///{path}")
+    schema.upgrade(sqlite_url(path))
     return path
 
 
 @pytest.fixture
 def database_url(empty_database: Path, tmp_path: Path) -> str:
-    path = tmp_path / "kinedex.sqlite3"
-    shutil.copy(empty_database, path)
-    return f"sqlite:///{path}"
+    if databases.is_sqlite():
+        shutil.copy(empty_database, tmp_path / "kinedex.sqlite3")
+    return databases.url_for(tmp_path)
 
 
 @pytest.fixture

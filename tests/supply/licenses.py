@@ -37,9 +37,14 @@ PERMISSIVE = frozenset(
     }
 )
 """Licenses that ask for no more than a notice (SPDX; BSD stands for one of its variants)."""
-LIBRARIES = {"certifi": "MPL-2.0", "soxr": "LGPL-2.1-or-later"}
+LIBRARIES = {
+    "certifi": "MPL-2.0",
+    "psycopg": "LGPL-3.0-only",
+    "psycopg-binary": "LGPL-3.0-only",
+    "soxr": "LGPL-2.1-or-later",
+}
 """Packages that come unchanged as files of their own, so that anybody can replace them: all that
-their licenses ask for. librosa brings both."""
+their licenses ask for. librosa brings certifi and soxr; psycopg is the driver of PostgreSQL."""
 _PINNED = re.compile(r"^([A-Za-z0-9_.-]+)==([^\s;]+)", re.MULTILINE)
 _OLD_NAMES = (
     (r"apache software|apache license,? version 2", "Apache-2.0"),

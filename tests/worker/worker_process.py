@@ -16,6 +16,7 @@ def worker_process(settings: Settings) -> Iterator[subprocess.Popen[bytes]]:
     """A worker over the data directory of `settings`; it is killed at the end of the block."""
     environ = os.environ | {
         "KINEDEX_DATA_DIR": str(settings.data_dir),
+        "KINEDEX_DATABASE_URL": settings.database,
         "KINEDEX_JOB_LEASE_S": str(settings.job_lease_s),
         "KINEDEX_JOB_HEARTBEAT_S": str(settings.job_heartbeat_s),
         "KINEDEX_ANALYSIS_PROCESSES": str(settings.analysis_processes),

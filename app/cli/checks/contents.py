@@ -34,7 +34,7 @@ def check_names(store: Store) -> Iterator[Finding]:
     if damage:
         yield problem("database", f"it is damaged: {damage[0]}", REPAIR)
     else:
-        yield fine("integrity", "a quick check found no damage")
+        yield _whole(store, "a quick check found no damage")
     with store.read() as tx:
         needed = references.referenced(tx)
     missing = [sha256 for sha256 in needed if not store.files.has(sha256)]
@@ -50,19 +50,27 @@ def check_contents(store: Store, care: Care) -> Iterator[Finding]:
         report = examine(store, lambda done, total: bar.update(task, completed=done, total=total))
         bar.update(task, completed=1, total=1)
     if not care.mends:
-        yield from _found(report)
+        yield from _found(store, report)
         return
     mended = mend(store, report, care.backup)
     yield from _mended(mended)
-    yield from _found(examine(store), has_queued=bool(mended.queued))
+    yield from _found(store, examine(store), has_queued=bool(mended.queued))
 
 
-def _found(report: VerificationReport, *, has_queued: bool = False) -> Iterator[Finding]:
+def _whole(store: Store, seen: str) -> Finding:
+    """No damage; seen: what was looked at, in the file of an SQLite database."""
+    server = "its server keeps watch over its pages; `pg_amcheck` reads them all"
+    return fine("integrity", seen if store.database.is_sqlite else server)
+
+
+def _found(
+    store: Store, report: VerificationReport, *, has_queued: bool = False
+) -> Iterator[Finding]:
     if report.damage:
         advice = f"`kinedex doctor --mend` mends indexes only. {REPAIR}"
         yield problem("database", f"it is damaged: {report.damage[0]}", advice)
     else:
-        yield fine("integrity", "all pages and references of the database were read")
+        yield _whole(store, "all pages and references of the database were read")
     yield _files(report.files, report.missing, report.damaged)
     arrays = (*report.unreadable, *report.lacking)
     if not arrays:

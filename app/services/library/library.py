@@ -22,6 +22,7 @@ from app.services.library.analysis_pool import AnalysisPool, Limits
 from app.services.library.fitted_models import METRICS, FittedModels, ModelKind
 from app.services.library.kept_tree import KeptTree
 from app.store import identity
+from app.store.database.access import ServerOptions
 from app.store.folders import warn_if_open
 from app.store.store import Store
 from app.store.upkeep.health import Health
@@ -78,7 +79,10 @@ class Library:
         cache = ArrayCache(ARRAY_CACHE_BYTES)
         # A clip that changed has new arrays: the index notices it first, and the cache must follow.
         index = VectorIndex(on_change=cache.forget)
-        store = Store.open(settings.database, settings.files_dir, library_id)
+        options = ServerOptions(
+            settings.database_connections, settings.database_statement_timeout_s
+        )
+        store = Store.open(settings.database, settings.files_dir, library_id, options)
         return cls(
             settings=settings,
             store=store,

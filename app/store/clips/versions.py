@@ -12,8 +12,9 @@ from dataclasses import dataclass
 from sqlalchemy import insert, select, update
 
 from app.store.clips.record import ClipState
-from app.store.database import schema
+from app.store.database import schema, signals
 from app.store.database.engine import Tx
+from app.store.database.signals import Signal
 from app.store.database.tables import clips, library, tombstones
 
 ONLY_ROW = 1
@@ -65,6 +66,7 @@ def lock(tx: Tx) -> None:
 
 def bump(tx: Tx) -> int:
     """Raises the version and returns the new one."""
+    signals.send(tx, Signal.LIBRARY)
     return int(tx.execute(_RAISE).scalar_one())
 
 

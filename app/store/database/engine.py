@@ -1,8 +1,7 @@
-"""Opens a database. Only this module depends on the kind of database.
+"""A database with its transactions. `sqlite` and `postgresql` know what each kind needs.
 
-SQLite uses a write-ahead log. Every commit is synced (`synchronous=FULL`), so that stored data
-survive kill -9 and a power cut. Writers take their lock at the beginning (`BEGIN IMMEDIATE`), so
-that no transaction fails in the middle because another one wrote first. Readers see one snapshot.
+Readers see one snapshot. Writers run one after the other, and a commit survives kill -9 and a
+power cut.
 """
 
 from __future__ import annotations
@@ -10,42 +9,28 @@ from __future__ import annotations
 import json
 import sqlite3
 import threading
-import time
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any, Self
 
 from pydantic_core import from_json
-from sqlalchemy import Connection, Engine, create_engine, event, func, select
+from sqlalchemy import Connection, Engine
 from sqlalchemy.engine import URL, make_url
 from sqlalchemy.exc import ArgumentError, DBAPIError
+from sqlalchemy.exc import TimeoutError as PoolTimeout
 
 from app.errors import ConfigurationError, DatabaseDamaged, DatabaseGone, DiskFull, StorageError
-from app.store.database import integrity
+from app.store.database import integrity, postgresql, sqlite
+from app.store.database.access import LOCK_TIMEOUT_S, Access, ServerOptions, options_for
 from app.store.database.database_file import DatabaseFile
-from app.store.folders import make_private
 
-BUSY_TIMEOUT_S = 30.0
 POOL_SIZE = 8
 POOL_OVERFLOW = 56
-"""With POOL_SIZE, more connections than the 58 threads of the API, so that no reader waits."""
+"""With POOL_SIZE, more connections than the 58 threads of the API, so that no reader waits. A
+database server has its own limit: see `ServerOptions`."""
 ERASE_WAIT_S = 2.0
 """How long `erase_traces` waits for readers; the worker tries again each minute."""
-WRITES_OPTION = "kinedex_writes"
-"""Execution option of a connection whose transaction writes."""
-MIGRATION_LOCK = 0x6B696E65
-"""Number of an advisory lock of PostgreSQL ("kine"); any number that nobody else uses."""
-
-_UNUSABLE = frozenset(
-    {
-        sqlite3.SQLITE_READONLY,
-        sqlite3.SQLITE_CANTOPEN,
-        sqlite3.SQLITE_IOERR,
-        sqlite3.SQLITE_PERM,
-    }
-)
-"""Result codes of SQLite that mean a failure of the file or the disk, not of the statement."""
 
 Tx = Connection
 """A running transaction, from `Database.read()` or `Database.write()`."""
@@ -54,7 +39,13 @@ Tx = Connection
 class Database:
     """An engine with its read and write transactions; safe to share between threads."""
 
-    def __init__(self, url: str | URL, *, foreign_keys: bool = True) -> None:
+    def __init__(
+        self,
+        url: str | URL,
+        *,
+        foreign_keys: bool = True,
+        options: ServerOptions | None = None,
+    ) -> None:
         """Opens no connection yet. `foreign_keys=False` is for migrations, which rebuild tables.
 
         Raises ConfigurationError for a URL that cannot be used.
@@ -64,10 +55,13 @@ class Database:
         """The file of an SQLite database; None for a database server."""
         self.damage: str | None = None
         """The message of the last transaction that met damage, until `clear_damage`."""
-        self.engine = _open_engine(parsed, self.file, foreign_keys=foreign_keys)
-        self._is_sqlite = self.engine.dialect.name == "sqlite"
-        self._reader = self.engine if self._is_sqlite else _snapshot_reader(self.engine)
-        self._writer = self.engine.execution_options(**{WRITES_OPTION: True})
+        self.engine = _open_engine(
+            parsed, self.file, options or ServerOptions(), foreign_keys=foreign_keys
+        )
+        self.is_sqlite = self.engine.dialect.name == "sqlite"
+        self._with = {
+            access: self.engine.execution_options(**options_for(access)) for access in Access
+        }
         # The threads of one process wait for each other here, which is faster than SQLite's
         # waiting: that polls the lock. Processes still poll.
         self._write_lock = threading.Lock()
@@ -83,7 +77,7 @@ class Database:
 
         Raises DatabaseGone, DatabaseDamaged, StorageError.
         """
-        with self._storage_failures(), self._reader.connect() as connection:
+        with self._storage_failures(), self._with[Access.READ].connect() as connection:
             yield connection
 
     @contextmanager
@@ -91,17 +85,26 @@ class Database:
         """A transaction that is committed durably when the block ends without an exception.
 
         Do not nest. Raises DiskFull; DatabaseGone; DatabaseDamaged; StorageError, also if another
-        writer holds the lock for BUSY_TIMEOUT_S.
+        writer holds the lock for LOCK_TIMEOUT_S.
         """
-        with self._writer_lock(), self._storage_failures(), self._writer.begin() as connection:
+        with self._begun(Access.WRITE) as connection:
+            yield connection
+
+    @contextmanager
+    def write_row(self) -> Iterator[Tx]:
+        """As `write`, to change one row by one statement.
+
+        A database server does not make it wait for writers of other rows.
+        """
+        with self._begun(Access.WRITE_ROW) as connection:
             yield connection
 
     @contextmanager
     def migrate(self) -> Iterator[Tx]:
         """A write transaction during which no other process can migrate."""
         with self.write() as tx:
-            if not self._is_sqlite:  # SQLite has only one writer at a time
-                tx.execute(select(func.pg_advisory_xact_lock(MIGRATION_LOCK)))
+            if not self.is_sqlite:
+                postgresql.lift_time_limits(tx)
             yield tx
 
     def watch_file(self) -> None:
@@ -121,7 +124,7 @@ class Database:
         wait_s: seconds to wait for readers and writers. Returns False if they were still active.
         Raises StorageError.
         """
-        if not self._is_sqlite:
+        if not self.is_sqlite:
             return True
         with self._storage_failures():
             connection = self.engine.raw_connection()
@@ -132,7 +135,7 @@ class Database:
                 return not cursor.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0]
             finally:
                 # The connection goes back into the pool, so its usual timeout is restored.
-                connection.cursor().execute(f"PRAGMA busy_timeout = {round(1000 * BUSY_TIMEOUT_S)}")
+                connection.cursor().execute(f"PRAGMA busy_timeout = {round(1000 * LOCK_TIMEOUT_S)}")
                 connection.close()
 
     def clear_damage(self) -> None:
@@ -152,22 +155,13 @@ class Database:
             return ()
         self.file.check()
         # A new connection, because pooled ones read pages from their cache, not from the file.
-        with closing(sqlite3.connect(self.file.path, timeout=BUSY_TIMEOUT_S)) as connection:
+        with closing(sqlite3.connect(self.file.path, timeout=LOCK_TIMEOUT_S)) as connection:
             return integrity.find_damage(connection, quick=quick)
 
-    def check_copyable(self) -> None:
-        """Raises ConfigurationError if `copy_to` cannot copy this database: only SQLite's files."""
-        if not self._is_sqlite:
-            raise ConfigurationError(
-                f"Kinedex copies SQLite databases only, and this one is {self.engine.dialect.name}:"
-                " copy the folder of files, dump the database with its own program (pg_dump), and"
-                " copy what is new in the folder after that."
-            )
-
     def copy_to(self, path: Path) -> None:
-        """Copies one snapshot of the database to `path`, while others read and write.
+        """Copies one snapshot of an SQLite database to `path`, while others read and write.
 
-        Call `check_copyable` before. Raises DiskFull, StorageError.
+        Raises DiskFull, StorageError.
         """
         connection = self.engine.raw_connection()
         try:
@@ -187,15 +181,23 @@ class Database:
         self.engine.dispose()
 
     @contextmanager
+    def _begun(self, access: Access) -> Iterator[Tx]:
+        writer = self._with[access]
+        with self._writer_lock(), self._storage_failures(), writer.begin() as connection:
+            yield connection
+
+    @contextmanager
     def _storage_failures(self) -> Iterator[None]:
         """Checks the file of the database, and converts exceptions of the driver to ours."""
         if self.file is not None:
             self.file.check()
         try:
             yield
+        except PoolTimeout as error:
+            raise StorageError("All connections to the database stayed in use") from error
         except (DBAPIError, sqlite3.Error) as error:
             cause = error.orig if isinstance(error, DBAPIError) else error
-            failure = _as_storage_error(cause)
+            failure = (sqlite if self.is_sqlite else postgresql).failure_of(cause)
             if failure is None:
                 raise
             if isinstance(failure, DatabaseDamaged):
@@ -204,19 +206,15 @@ class Database:
 
     @contextmanager
     def _writer_lock(self) -> Iterator[None]:
-        if not self._is_sqlite:
+        if not self.is_sqlite:
             yield
             return
-        if not self._write_lock.acquire(timeout=BUSY_TIMEOUT_S):
+        if not self._write_lock.acquire(timeout=LOCK_TIMEOUT_S):
             raise StorageError("The database stayed locked by another writer of this process")
         try:
             yield
         finally:
             self._write_lock.release()
-
-
-def _snapshot_reader(engine: Engine) -> Engine:
-    return engine.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)
 
 
 def database_file(url: URL | str) -> DatabaseFile | None:
@@ -229,12 +227,14 @@ def database_file(url: URL | str) -> DatabaseFile | None:
 
 def _parsed(url: URL | str) -> URL:
     try:
-        return make_url(url)
+        return postgresql.with_driver(make_url(url))
     except ArgumentError as error:
         raise ConfigurationError("KINEDEX_DATABASE_URL is not a database URL") from error
 
 
-def _open_engine(parsed: URL, file: DatabaseFile | None, *, foreign_keys: bool) -> Engine:
+def _open_engine(
+    parsed: URL, file: DatabaseFile | None, options: ServerOptions, *, foreign_keys: bool
+) -> Engine:
     # hide_parameters: logs and tracebacks must not hold the content of rows.
     common: dict[str, Any] = {
         "json_serializer": _to_json,
@@ -244,96 +244,40 @@ def _open_engine(parsed: URL, file: DatabaseFile | None, *, foreign_keys: bool) 
         "max_overflow": POOL_OVERFLOW,
     }
     if parsed.get_backend_name() == "sqlite":
-        return _open_sqlite(parsed, file, common, foreign_keys=foreign_keys)
+        return sqlite.open_engine(parsed, file, common, foreign_keys=foreign_keys)
+    if parsed.get_backend_name() != "postgresql":
+        raise ConfigurationError(
+            "KINEDEX_DATABASE_URL: Kinedex knows SQLite and PostgreSQL, not "
+            f"{parsed.get_backend_name()}"
+        )
     try:
-        return create_engine(parsed, pool_pre_ping=True, **common)
+        return postgresql.open_engine(parsed, common, options)
     except (ArgumentError, ImportError) as error:
         raise ConfigurationError(
-            f"KINEDEX_DATABASE_URL: there is no driver for {parsed.drivername} databases"
+            f"KINEDEX_DATABASE_URL: there is no driver for {parsed.drivername} databases: install "
+            "`kinedex[postgres]`"
         ) from error
 
 
 def _to_json(value: object) -> str:
     # JSON has no NaN: other programs could not read such a column.
-    return json.dumps(value, allow_nan=False, ensure_ascii=False)
+    text = json.dumps(value, allow_nan=False, ensure_ascii=False)
+    if _NUL in text:
+        text = json.dumps(_without_nul(value), allow_nan=False, ensure_ascii=False)
+    return text
 
 
-def _open_sqlite(
-    url: URL, file: DatabaseFile | None, common: dict[str, Any], *, foreign_keys: bool
-) -> Engine:
-    if not url.database or url.database == ":memory:":
-        raise ConfigurationError(
-            "Processes cannot share an SQLite database in memory: name a file in "
-            "KINEDEX_DATABASE_URL"
-        )
-    _make_folder(Path(url.database).parent)
-    engine = create_engine(url, connect_args={"timeout": BUSY_TIMEOUT_S}, **common)
-
-    @event.listens_for(engine, "do_connect")
-    def _check_file(*_: object) -> None:
-        # Without this, SQLite would make a new file if the opened one was moved away.
-        if file is not None:
-            _open_file(file)
-
-    @event.listens_for(engine, "connect")
-    def _prepare(connection: sqlite3.Connection, _record: object) -> None:
-        connection.isolation_level = None  # the driver sends no BEGIN: `_begin` does, below
-        connection.execute("PRAGMA synchronous = FULL")
-        connection.execute("PRAGMA secure_delete = ON")  # deleted personal data are overwritten
-        connection.execute(f"PRAGMA foreign_keys = {'ON' if foreign_keys else 'OFF'}")
-        _ensure_wal(connection)
-
-    @event.listens_for(engine, "begin")
-    def _begin(connection: Connection) -> None:
-        writes = connection.get_execution_options().get(WRITES_OPTION, False)
-        connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")
-
-    return engine
+_NUL = "\\u0000"
+"""A NUL as JSON writes it; also a backslash before the letters `u0000`, which stays as it is."""
 
 
-def _make_folder(folder: Path) -> None:
-    try:
-        make_private(folder)
-    except OSError as error:
-        raise ConfigurationError(
-            f"The folder {folder} of the database cannot be made: {error.strerror}"
-        ) from error
+def _without_nul(value: object) -> object:
+    """The value with U+FFFD for each NUL: PostgreSQL cannot read a text that has one.
 
-
-def _open_file(file: DatabaseFile) -> None:
-    try:
-        file.open()
-    except OSError as error:
-        raise StorageError(
-            f"The database {file.path} cannot be opened: {error.strerror}"
-        ) from error
-
-
-def _ensure_wal(connection: sqlite3.Connection) -> None:
-    # The file stores the mode. If two processes create the file at the same time, one can meet a
-    # lock for which SQLite does not call its busy handler. Therefore the loop.
-    deadline = time.monotonic() + BUSY_TIMEOUT_S
-    while connection.execute("PRAGMA journal_mode").fetchone()[0] != "wal":
-        try:
-            connection.execute("PRAGMA journal_mode = WAL")
-        except sqlite3.OperationalError:
-            if time.monotonic() > deadline:
-                raise
-            time.sleep(0.01)
-
-
-def _as_storage_error(error: BaseException | None) -> StorageError | None:
-    code = getattr(error, "sqlite_errorcode", None)
-    # SHMSIZE: SQLite cannot make its shared-memory file, which needs space too.
-    if code in (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR_SHMSIZE):
-        return DiskFull()
-    if code is None:
-        return None
-    # The low byte is the primary result code; the others refine it.
-    if code & 0xFF in (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB):
-        return DatabaseDamaged(f"The database is damaged: {error}")
-    if code & 0xFF in (sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED):
-        return StorageError("The database stayed locked by another writer")
-    if code & 0xFF in _UNUSABLE:
-        return StorageError(f"The database cannot be used: {error}")
-    return None
+    Only what a file says can hold a NUL, such as the name of a joint: texts of clients are refused.
+    """
+    if isinstance(value, str):
+        return value.replace("\0", "\N{REPLACEMENT CHARACTER}")
+    if isinstance(value, dict):
+        return {_without_nul(key): _without_nul(item) for key, item in value.items()}
+    return [_without_nul(item) for item in value] if isinstance(value, list | tuple) else value

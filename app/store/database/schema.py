@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from sqlalchemy import Column, inspect, text
 
 from app.errors import DatabaseOutOfDate, StorageError
+from app.store.database import postgresql
 from app.store.database.engine import Database, Tx
 
 if TYPE_CHECKING:
@@ -77,6 +78,8 @@ def upgrade(database_url: str) -> SchemaState:
                     "it is damaged"
                 )
             command.upgrade(_config(tx), "head")
+            if not database.is_sqlite:
+                postgresql.collate(tx)
             return _state(tx)
     finally:
         database.close()

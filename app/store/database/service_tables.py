@@ -84,3 +84,11 @@ keyed_calls = Table(
     Column("body", LargeBinary),
     Column("created_at", UtcDateTime, nullable=False, index=True),
 )
+
+# When a worker last began a task that one worker does for all: see `jobs.periodic`.
+periodic_tasks = Table(
+    "periodic_tasks",
+    metadata,
+    Column("name", String, primary_key=True),
+    Column("began_at", UtcDateTime, nullable=False),
+)

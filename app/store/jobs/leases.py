@@ -25,8 +25,10 @@ from sqlalchemy import (
 )
 
 from app.errors import LeaseLost
+from app.store.database import signals
 from app.store.database.engine import Tx
 from app.store.database.ids import utc_now
+from app.store.database.signals import Signal
 from app.store.database.tables import jobs
 from app.store.jobs import endings
 from app.store.jobs import repository as job_repository
@@ -108,7 +110,9 @@ def end_canceled(tx: Tx, lease: Lease) -> JobRecord:
 def give_back(tx: Tx, lease: Lease) -> JobRecord:
     """Puts the job back into the queue, for example when the worker stops. Raises LeaseLost."""
     values = {"state": JobState.QUEUED.value, "progress": 0.0}
-    return job_repository.to_record(_change(tx, lease, values | _FREE))
+    queued = job_repository.to_record(_change(tx, lease, values | _FREE))
+    signals.send(tx, Signal.QUEUE)
+    return queued
 
 
 def retry_later(tx: Tx, lease: Lease, delay_s: float, **counters: int) -> JobRecord:

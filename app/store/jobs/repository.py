@@ -11,9 +11,11 @@ from sqlalchemy import RowMapping, Select, bindparam, insert, select
 from app.errors import JobNotFound
 from app.store import audit
 from app.store.clips import versions as library
+from app.store.database import signals
 from app.store.database.engine import Tx
 from app.store.database.ids import new_id, utc_now
 from app.store.database.paging import Page, Position, after, read_cursor, write_cursor
+from app.store.database.signals import Signal
 from app.store.database.tables import jobs
 from app.store.database.totals import Total, total_of
 from app.store.jobs.record import OPEN_STATES, JobKind, JobRecord, JobState, NewJob
@@ -49,6 +51,7 @@ def enqueue(tx: Tx, new: NewJob) -> JobRecord:
     }
     job = to_record(tx.execute(_ADD, values).mappings().one())
     audit.note(job_id=job.id)
+    signals.send(tx, Signal.QUEUE)
     return job
 
 

@@ -5,6 +5,9 @@ Files never change, because their names are the hashes of their content, so they
 and after the snapshot. A file that was deleted meanwhile is missing in the copy. Then the database
 is copied again, until no file is missing.
 
+The copy of a PostgreSQL database is a dump (`dump`) beside the files; `kinedex db restore` loads it
+into an empty database.
+
 The database may have the schema of an earlier version: a copy is made before each upgrade. Then the
 copy has this schema too, and is upgraded as the library is.
 
@@ -17,7 +20,8 @@ from __future__ import annotations
 import os
 import shutil
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -34,6 +38,8 @@ from app.store.files.locked_file import locked_folder, remove_if_abandoned
 from app.store.folders import make_private_synced, sync_folder
 from app.store.jobs import references, removals
 from app.store.store import Store
+from app.store.upkeep import dump
+from app.store.upkeep.dump import DUMP
 
 DATABASE, FILES = "kinedex.sqlite3", "files"
 """Names in a data directory."""
@@ -71,12 +77,13 @@ class _Files:
 def back_up(store: Store, path: Path, progress: Progress | None = None) -> Backup:
     """Copies the library to `path`, which appears only when the copy is complete and on disk.
 
-    Raises BadField if `path` exists or nothing can be written there; ConfigurationError for a
-    database that is not SQLite; DiskFull; DatabaseDamaged; StorageError, which names each missing
-    or damaged file of the library. Then no part of the copy is left. If the process is killed, the
-    next copy in the same folder removes the unfinished one.
+    Raises BadField if `path` exists or nothing can be written there; ConfigurationError if the
+    programs that dump a PostgreSQL database are not installed; DiskFull; DatabaseDamaged;
+    StorageError, which names each missing or damaged file of the library. Then no part of the copy
+    is left. If the process is killed, the next copy in the same folder removes the unfinished one.
     """
-    store.database.check_copyable()
+    if not store.database.is_sqlite:
+        dump.check_programs()
     if os.path.lexists(path):
         message = f"{path} is there already: a copy never replaces anything"
         raise BadField(f"path: {message}", places=[Place("path", message)])
@@ -106,7 +113,7 @@ def _is_unfinished_copy(part: Path) -> bool:
         names = {each.name.partition("-")[0] for each in part.iterdir()}  # without "-wal"
     except OSError:
         return False
-    return names <= {DATABASE, FILES}
+    return names <= {DATABASE, DUMP, FILES}
 
 
 def _copy_and_rename(store: Store, part: Path, path: Path, progress: Progress | None) -> Backup:
@@ -137,16 +144,36 @@ def _copy(store: Store, part: Path, progress: Progress | None) -> frozenset[str]
     _add(files, needed, progress)
     lost: set[str] = set()
     for _ in range(MAX_TRIES):
-        needed, lost_before = _copy_database(store.database, part / DATABASE), lost
-        _add(files, needed, progress)
-        lost = files.missing | files.damaged
-        if not lost:
-            for sha256 in frozenset(files.target) - needed:
-                files.target.remove(sha256)
-            return needed
+        lost_before = lost
+        with _moment_of(store.database, part) as moment:
+            _add(files, moment.needed, progress)
+            lost = files.missing | files.damaged
+            if not lost:
+                moment.finish()
+                for sha256 in frozenset(files.target) - moment.needed:
+                    files.target.remove(sha256)
+                return moment.needed
         if lost == lost_before:  # the library itself lacks them: another copy would not help
             break
     raise _incomplete(files)
+
+
+@dataclass(frozen=True, slots=True)
+class _Moment:
+    """A moment of the database. needed: the names of its files; finish: completes its copy."""
+
+    needed: frozenset[str]
+    finish: Callable[[], None]
+
+
+@contextmanager
+def _moment_of(database: Database, part: Path) -> Iterator[_Moment]:
+    """The present moment. A dump takes long, so it waits for `finish`: the files are there then."""
+    if database.is_sqlite:
+        yield _Moment(_copy_database(database, part / DATABASE), lambda: None)
+    else:
+        with dump.snapshot(database) as taken:
+            yield _Moment(taken.needed, partial(taken.dump, part / DUMP))
 
 
 def _incomplete(files: _Files) -> StorageError:

@@ -182,7 +182,8 @@ _DUE = (
         ),
         exists().where(webhook_deliveries.c.webhook_id == webhooks.c.id),
     )
-    .order_by(webhooks.c.not_before, webhooks.c.id)
+    # Without nulls_first, databases put those that never failed first or last.
+    .order_by(webhooks.c.not_before.nulls_first(), webhooks.c.id)
 )
 _OLDEST = (
     select(webhook_deliveries)

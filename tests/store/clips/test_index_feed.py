@@ -64,6 +64,7 @@ def test_only_clips_changed_since_a_version_in_the_order_of_their_changes(
         assert library.deleted_since(tx, library.version(tx)) == ()
 
 
+@pytest.mark.sqlite_only
 def test_changed_clips_are_found_without_reading_all_clips(store: Store) -> None:
     """SQLite must use the index of the version; with that of the state it would read all clips."""
     with store.read() as tx:

@@ -12,14 +12,15 @@ from sqlalchemy import select
 from app.config import sqlite_url
 from app.errors import ConfigurationError, DiskFull, StorageError
 from app.store.clips import versions as library
-from app.store.clips.repository import add_or_get
-from app.store.database import engine
+from app.store.clips.repository import add_or_get, get, set_failed
+from app.store.database import engine, postgresql, sqlite
 from app.store.database.engine import Database
 from app.store.database.tables import clips
 from app.store.store import Store
-from tests.store.conftest import new_clip
+from tests.store.conftest import AddClip, new_clip
 
 
+@pytest.mark.sqlite_only
 def test_sqlite_is_opened_for_durability(store: Store) -> None:
     with store.read() as tx:
         settings = {
@@ -30,7 +31,7 @@ def test_sqlite_is_opened_for_durability(store: Store) -> None:
         "journal_mode": "wal",
         "synchronous": 2,
         "foreign_keys": 1,
-        "busy_timeout": engine.BUSY_TIMEOUT_S * 1000,
+        "busy_timeout": engine.LOCK_TIMEOUT_S * 1000,
     }
 
 
@@ -41,6 +42,7 @@ def test_a_failed_write_leaves_nothing(store: Store) -> None:
         assert library.version(tx) == 0
 
 
+@pytest.mark.sqlite_only
 def test_a_write_in_a_read_transaction_is_rolled_back(store: Store) -> None:
     with store.read() as tx:
         library.bump(tx)
@@ -93,17 +95,31 @@ def test_many_threads_can_read_at_once(store: Store) -> None:
 def test_a_lock_that_is_not_released_in_time_is_a_storage_error(
     store: Store, database_url: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(engine, "BUSY_TIMEOUT_S", 0.05)
+    for module in (engine, sqlite, postgresql):
+        monkeypatch.setattr(module, "LOCK_TIMEOUT_S", 0.05)
     other = Database(database_url)
     with store.write() as tx:
         library.bump(tx)
-        with pytest.raises(StorageError, match="locked"), other.write():
+        with pytest.raises(StorageError, match="stayed locked by another writer"), other.write():
             pass
-        with pytest.raises(StorageError, match="this process"), store.write():
-            pass
+        if store.database.is_sqlite:
+            with pytest.raises(StorageError, match="this process"), store.write():
+                pass
     other.close()
 
 
+def test_a_nul_that_a_file_holds_becomes_a_mark_in_json(store: Store, add_clip: AddClip) -> None:
+    """PostgreSQL cannot read it. A backslash before the same letters stays as it is."""
+    clip = add_clip("walk")
+    problem = {"detail": "joint a\0b", "more": [{"c\0": 1}, "d\\u0000"]}
+    with store.write() as tx:
+        set_failed(tx, clip.id, problem)
+    with store.read() as tx:
+        found = get(tx, clip.id).error
+    assert found == {"detail": "joint a\ufffdb", "more": [{"c\ufffd": 1}, "d\\u0000"]}
+
+
+@pytest.mark.sqlite_only
 def test_a_full_disk_is_reported_and_nothing_is_stored(store: Store) -> None:
     with store.write() as tx:  # the limit belongs to the connection, which the pool reuses
         tx.exec_driver_sql("PRAGMA max_page_count = 1")

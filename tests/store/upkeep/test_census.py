@@ -69,6 +69,9 @@ def test_the_free_space_and_the_size_of_the_database_are_measured(
 ) -> None:
     store.files.root.mkdir(exist_ok=True)
     found = census.measure_space(store)
+    if store.database.file is None:  # its disk is another machine's
+        assert (set(found.free), found.database) == ({"files"}, 0)
+        return
     assert set(found.free) == {"database", "files"}
     assert all(free > 0 for free in found.free.values())
     assert found.database >= (tmp_path / "kinedex.sqlite3").stat().st_size > 0

@@ -67,6 +67,7 @@ def test_every_damage_is_named(store: Store, names: list[str], tmp_path: Path) -
     assert found.damage == ()
 
 
+@pytest.mark.sqlite_only
 def test_pages_of_noise_are_damage(store: Store, names: list[str]) -> None:
     overwrite_pages(store)
     found = verify(store)
