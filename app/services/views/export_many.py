@@ -6,7 +6,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
-from app.errors import ClipNotFound, ClipNotReady, NoGait, NotEnoughKeyposes
+from app.errors import (
+    ClipNotFound,
+    ClipNotReady,
+    LicenseNotAllowed,
+    NoGait,
+    NotEnoughKeyposes,
+)
 from app.services.library.filters import resolved_filter
 from app.services.library.library import Library
 from app.services.views.export import export
@@ -15,7 +21,7 @@ from app.store.clips import listing
 from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipState
 
-LEFT_OUT = (ClipNotFound, ClipNotReady, NoGait, NotEnoughKeyposes)
+LEFT_OUT = (ClipNotFound, ClipNotReady, LicenseNotAllowed, NoGait, NotEnoughKeyposes)
 """Failures that concern one clip, and not the others."""
 
 

@@ -29,6 +29,7 @@ from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
 from app.services.library.stored_motion import load_motion
 from app.store.clips.filter import ClipFilter
+from app.store.clips.license_policy import only_licenses
 from app.store.clips.record import ClipRecord
 from app.store.collections import NewItem
 from tests.libraries import settings_for
@@ -219,6 +220,18 @@ def test_a_collection_is_exported_on_one_body_in_any_format(
         "LICENSES.txt",
         "CREDITS.txt",
     ]
+
+
+def test_a_license_that_is_not_allowed_is_left_out_of_the_export(
+    mine: Library, some: list[ClipRecord]
+) -> None:
+    made = collections.create(mine, "licensed", items=[NewItem(clip.id) for clip in some[:2]])
+    clips.update_clip(mine, some[1].id, {"license": "private"})
+    with only_licenses(("CC0-1.0",)):
+        archive = zipped(mine, made.id, "bvh")
+    rows = list(csv.DictReader(io.TextIOWrapper(archive.open("left_out.csv"), "utf-8")))
+    assert [row["clip_id"] for row in rows] == [some[1].id]
+    assert "private" in rows[0]["reason"]
 
 
 def test_a_clip_that_is_not_ready_is_left_out_of_the_export(
