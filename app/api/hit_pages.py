@@ -124,8 +124,11 @@ def _shapes(name: str, field: FieldInfo, names: _Names) -> list[_Shape]:
     if field.annotation is Clip:
         return [_writer(Clip, _of_clip(names))]
     inner = getattr(field.annotation, "__args__", (None,))[0]
-    if isinstance(inner, type) and issubclass(inner, BaseModel) and name == "parts":
+    if isinstance(inner, type) and issubclass(inner, BaseModel):
         write = _writer(inner, None)
-        return [lambda items: [write(item) for item in items]]
+        if name == "parts":
+            return [lambda items: [write(item) for item in items]]
+        if name == "origin":
+            return [lambda origin: None if origin is None else write(origin)]
     steps = (BeforeValidator, AfterValidator)
     return [one.func for one in field.metadata if isinstance(one, steps)]  # type: ignore[misc]

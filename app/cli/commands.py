@@ -120,7 +120,7 @@ COMMANDS = {
     ),
     "keys": CommandEntry("app.cli.keys", "program", "Create, list and revoke API keys."),
     "db": CommandEntry(
-        "app.cli.db", "program", "Upgrade the database, or connect it to its files."
+        "app.cli.db", "program", "Upgrade or restore the database, or connect it to its files."
     ),
 }
 

@@ -18,6 +18,7 @@ from app.store.clips import clip_captions, clip_metadata, visibility
 from app.store.clips.measures import MEASURES
 from app.store.clips.record import ClipWarning
 from app.store.clips.repository import words_of
+from app.store.clips.rows import origin_of
 from app.store.database.engine import Tx
 from app.store.database.tables import clips
 from app.store.database.text_list import as_list, is_one_of
@@ -33,6 +34,8 @@ PLAIN = frozenset(
 
 AUDIO = frozenset({"has_audio", "audio_begins_at"})
 _AUDIO_COLUMNS = ("audio_sha256", "audio_offset", "audio_offset_override")
+ORIGIN = "origin"
+_ORIGIN_COLUMNS = ("origin_clip_id", "origin_steps", "origin_deleted")
 
 CACHED_TEXTS = 4096
 """Number of different JSON texts that are kept parsed."""
@@ -72,7 +75,7 @@ _OF_MANY: Mapping[str, tuple[Callable[[Tx, Collection[str]], Mapping[str, Any]],
 }
 """Fields in tables of their own: the function that reads them by clip id, and the empty value."""
 
-FIELDS = PLAIN | AUDIO | _PARSERS.keys() | _OF_MANY.keys()
+FIELDS = PLAIN | AUDIO | {ORIGIN} | _PARSERS.keys() | _OF_MANY.keys()
 """All fields that `read` knows: attributes of `ClipRecord`."""
 
 
@@ -109,6 +112,9 @@ def read(tx: Tx, clip_ids: Collection[str], names: Collection[str]) -> dict[str,
     if not wanted.isdisjoint(AUDIO):
         for values in found.values():
             _add_audio(values)
+    if ORIGIN in wanted:
+        for values in found.values():
+            values[ORIGIN] = origin_of(values)
     for name, (read_many, empty) in _OF_MANY.items():
         if name in wanted:
             by_id = read_many(tx, found.keys())
@@ -125,6 +131,8 @@ def _query(names: frozenset[str]) -> tuple[tuple[str, ...], Select[Any]]:
     columns += [cast(clips.c[name], Text).label(name) for name in _PARSERS if name in names]
     if not names.isdisjoint(AUDIO):
         columns += [clips.c[name] for name in _AUDIO_COLUMNS]
+    if ORIGIN in names:
+        columns += [clips.c[name] for name in _ORIGIN_COLUMNS]
     query = select(*columns).where(is_one_of(clips.c.id, "ids"))
     return tuple(query.selected_columns.keys()), query
 

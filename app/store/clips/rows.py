@@ -132,7 +132,7 @@ def to_record(
         "warnings": tuple(ClipWarning(**warning) for warning in row["warnings"] or ()),
         "reanalysis": None if row["reanalysis"] is None else Reanalysis(row["reanalysis"]),
         "hints": _hints(row),
-        "origin": _origin(row),
+        "origin": origin_of(row),
         "audio": _audio(row),
     }
     return ClipRecord(**values)
@@ -161,7 +161,8 @@ def origin_columns(origin: ClipOrigin | None) -> dict[str, Any]:
     return {"origin_clip_id": origin.clip_id, "origin_steps": list(origin.steps)}
 
 
-def _origin(row: RowMapping) -> ClipOrigin | None:
+def origin_of(row: Mapping[str, Any] | RowMapping) -> ClipOrigin | None:
+    """The origin of the clip with these columns; None for a clip that is no edited copy."""
     if row["origin_clip_id"] is None:
         return None
     steps = tuple(row["origin_steps"] or ())
