@@ -9,7 +9,7 @@ import typer
 
 from app.cli.hits import print_hits
 from app.cli.options import FilterJson, IncludeSelf, filter_of
-from app.cli.output import AsCsv, AsJson, print_csv, print_json, print_table
+from app.cli.output import AsCsv, AsJson, print_csv, print_json, print_table, print_text
 from app.cli.query_source import (
     FrameRate,
     Query,
@@ -172,9 +172,8 @@ def recognize(
         ]
         print_table(("", "answer", "score"), rows)
         print_table(("word", "score"), [(one.word, one.score) for one in answer.words])
-    if not as_json:
         for warning in answer.warnings:
-            typer.echo(warning, err=True)
+            print_text(warning)
 
 
 def _answer_rows(answer: Recognition) -> list[dict[str, Any]]:

@@ -16,7 +16,7 @@ from app.api.schemas.search import MotionHits, WordHits
 from app.errors import BadField
 from app.services.find.hits import Hit, Hits, PartScore
 from app.store.clips.partial import FIELDS, PartialClip
-from app.store.clips.record import ClipState, ClipWarning, Reanalysis
+from app.store.clips.record import ClipOrigin, ClipState, ClipWarning, Reanalysis
 
 FULL: dict[str, Any] = {
     "id": "clip_1",
@@ -50,8 +50,9 @@ FULL: dict[str, Any] = {
     "audio_begins_at": 0.1,
     "error": {"code": "unreadable", "detail": "Line 3."},
     "reanalysis": Reanalysis.FAILED,
+    "origin": ClipOrigin("clip_0", ({"kind": "cut", "start": 0.5, "end": None},), is_deleted=True),
 }
-EMPTY = FULL | dict.fromkeys(("path", "duration", "frame_rate", "error", "reanalysis"))
+EMPTY = FULL | dict.fromkeys(("path", "duration", "frame_rate", "error", "reanalysis", "origin"))
 
 
 def _hits(parts: tuple[PartScore, ...] = (), time: float | None = None) -> Hits:
