@@ -73,7 +73,16 @@ def test_the_time_of_each_stage_is_summed(demo_service: Live) -> None:
     counts, seconds = values(stages, "_count"), values(stages, "_sum")
     assert set(counts) == {
         (stage,)
-        for stage in ("read", "canonicalize", "listen", "describe", "symbol", "rhythm", "keyposes")
+        for stage in (
+            "read",
+            "canonicalize",
+            "listen",
+            "describe",
+            "symbol",
+            "rhythm",
+            "keyposes",
+            "measures",
+        )
     }
     assert all(count >= clips for count in counts.values())
     assert seconds["symbol",] > 0

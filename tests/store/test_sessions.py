@@ -68,6 +68,7 @@ def test_the_session_unused_for_longest_leaves_first(
     assert [kept.key_of(token) for token in (first, second, third)] == ["a", "", "c"]
 
 
+@pytest.mark.sqlite_only
 def test_no_token_is_stored(opened: Open, tmp_path: Path) -> None:
     token = opened().begin("the key")
     content = b"".join(path.read_bytes() for path in tmp_path.glob(f"{FILE_NAME}*"))
@@ -75,6 +76,7 @@ def test_no_token_is_stored(opened: Open, tmp_path: Path) -> None:
     assert token.encode() not in content
 
 
+@pytest.mark.sqlite_only
 def test_rows_that_cannot_be_used_sign_nobody_in(opened: Open, tmp_path: Path) -> None:
     (tmp_path / FILE_NAME).write_bytes(b"no database" * 100)
     kept = opened()

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from app.api.deps import Lib, reads_source
+from app.api.deps import Lib, reads
 from app.api.guard.admission import quick
 from app.api.openapi import refusals
 from app.api.schemas.filters import Filter
@@ -17,7 +17,7 @@ from app.services.curation import measures
 router = APIRouter(prefix="/v1", tags=["curation"])
 
 
-@router.get("/measures", dependencies=[reads_source, quick], responses=refusals())
+@router.get("/measures", dependencies=[reads, quick], responses=refusals())
 def list_measures(lib: Lib, query: Annotated[Filter, Query()]) -> MeasureList:
     """The measures of clips, each with unit, definition, and deciles of the library.
 

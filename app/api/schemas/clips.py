@@ -55,7 +55,7 @@ def _is_order(name: str) -> str:
 Sort = Annotated[
     str,
     AfterValidator(_is_order),
-    Field(json_schema_extra={"pattern": f"^-?({'|'.join(SORT_NAMES)})$"}),
+    Field(max_length=40, json_schema_extra={"pattern": f"^-?({'|'.join(SORT_NAMES)})$"}),
 ]
 Stack = Annotated[
     str,

@@ -108,5 +108,5 @@ def test_every_fps_parameter_has_the_same_bounds(app: FastAPI, routes: list[APIR
             if parameter["name"] == "fps":
                 number = parameter["schema"]
                 bounds[route.path] = number["minimum"], number["maximum"]
-    assert len(bounds) == 4
+    assert len(bounds) == 5
     assert set(bounds.values()) == {(1.0, 1000.0)}

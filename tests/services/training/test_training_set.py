@@ -74,6 +74,7 @@ def test_clips_have_disturbed_copies(lib: Library, some_demo_clips: list[DemoCli
     assert len(copies) == len(training) == 2
     for own, full in zip(copies, training.full_samples, strict=True):
         assert own is not None
+        own = own[:-1]  # a mirrored kick is another kick
         apart = np.linalg.norm(own - full, axis=1)
         other = np.linalg.norm(own - training.full_samples.sum(axis=0) + full, axis=1)
         assert (apart < other).all()
