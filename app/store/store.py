@@ -113,6 +113,13 @@ class Store:
         """
         return self.database.erase_traces(wait_s)
 
+    def rebuild(self) -> bool:
+        """Removes traces of deleted data from the unused bytes of the database's file.
+
+        Returns False if this was not possible: then call it again, or copy the database.
+        """
+        return self.database.rebuild()
+
     def close(self) -> None:
         """Closes all connections."""
         self.database.close()

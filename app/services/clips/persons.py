@@ -36,6 +36,11 @@ def forget_person(lib: Library, name: str) -> JobRecord:
     """
     person = fields.text("name", name) or ""
     job = lib.store.write_even_when_full(lambda tx: _forget(tx, person))
+    if not lib.store.rebuild():
+        _log.warning(
+            "unused bytes of the database may still hold the name of a forgotten person:"
+            " stop Kinedex and run VACUUM by the program sqlite3"
+        )
     lib.store.erase_traces()
     return job
 

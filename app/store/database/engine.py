@@ -31,6 +31,8 @@ POOL_OVERFLOW = 56
 database server has its own limit: see `ServerOptions`."""
 ERASE_WAIT_S = 2.0
 """How long `erase_traces` waits for readers; the worker tries again each minute."""
+MAX_REBUILT_BYTES = 2**30
+"""The largest file that is written anew while others use it: it takes about 10 s on a disk."""
 
 Tx = Connection
 """A running transaction, from `Database.read()` or `Database.write()`."""
@@ -137,6 +139,24 @@ class Database:
                 # The connection goes back into the pool, so its usual timeout is restored.
                 connection.cursor().execute(f"PRAGMA busy_timeout = {round(1000 * LOCK_TIMEOUT_S)}")
                 connection.close()
+
+    def rebuild(self) -> bool:
+        """Writes an SQLite file anew, without the bytes that no row uses.
+
+        SQLite overwrites deleted rows, but not the copies that a page keeps of rows that moved to
+        another page. Writers wait meanwhile, so a file over MAX_REBUILT_BYTES stays as it is.
+        Returns whether no such bytes are left.
+        """
+        if self.file is None:
+            return True
+        if self.file.path.stat().st_size > MAX_REBUILT_BYTES:
+            return False
+        try:
+            with closing(sqlite3.connect(self.file.path, timeout=LOCK_TIMEOUT_S)) as connection:
+                connection.execute("VACUUM")
+        except sqlite3.Error:  # no space for the copy, or another process writes all the time
+            return False
+        return True
 
     def clear_damage(self) -> None:
         """Records that a damaged database is whole again.
