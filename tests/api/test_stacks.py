@@ -30,7 +30,11 @@ def test_a_stack_can_be_chosen_at_upload_later_and_for_a_query(demo_service: Liv
         again = client.post("/v1/clips", **_sent("bow")).json()
         demo_service.wait_for_job(again["job"]["id"])
         clip = client.get(path).json()
-        assert (clip["state"], clip["frames"], set(clip)) == ("ready", 31, CLIP_FIELDS)
+        assert (clip["state"], clip["frames"], set(clip)) == (
+            "ready",
+            31,
+            CLIP_FIELDS | {"measures"},
+        )
 
         def found(stack: str, **more: str) -> list[str]:
             sent = _sent(stack)

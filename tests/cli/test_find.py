@@ -77,7 +77,9 @@ def test_parts_of_clips_are_found_with_their_bounds(kinedex: Kinedex, folder: Pa
     assert lines[0].split() == columns
     assert lines[1].split()[2:4] == [f"{first['start']:.3f}", f"{first['end']:.3f}"]
     assert "scope: " in _refused(kinedex, *part, "--scope", "frames")
-    assert kinedex("search", "--words", "kick", "--scope", "windows").code == 2
+    moments = kinedex("search", "--words", "kick", "--scope", "windows", "--json").json()["items"]
+    assert moments[0]["clip"]["task"] == "kick"
+    assert 0 <= moments[0]["start"] < moments[0]["end"]
 
 
 def test_words_find_clips_and_unknown_words_are_printed(kinedex: Kinedex) -> None:

@@ -13,6 +13,7 @@ from app.kinedex_error import Place
 from app.services import fields
 from app.services.annotations.checks import of_spans
 from app.services.annotations.clip_annotations import list_annotations, store_all
+from app.services.library.filters import resolved_filter
 from app.services.library.library import Library
 from app.store.clips import clip_annotations as stored
 from app.store.clips import listing as clip_listing
@@ -66,10 +67,15 @@ def export_annotations(lib: Library, clip_id: str, format: AnnotationFormat) -> 
 def export_library(lib: Library, filter: ClipFilter | None = None) -> Iterator[bytes]:
     """The annotations of all clips that pass a filter as one CSV file, by path.
 
-    An import reads it again as `annotations.csv` in the root of the same folders.
+    An import reads it again as `annotations.csv` in the root of the same folders. Raises BadField,
+    before the first block.
     """
+    return _blocks(lib, resolved_filter(lib, filter))
+
+
+def _blocks(lib: Library, passing: ClipFilter) -> Iterator[bytes]:
     with lib.store.read() as tx:
-        ids, _ = clip_listing.ids_by_path(tx, filter or ClipFilter())
+        ids, _ = clip_listing.ids_by_path(tx, passing)
     yield table.write_table([])
     head = len(table.write_table([]))
     for batch in clips.in_batches(ids):

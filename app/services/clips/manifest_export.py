@@ -33,9 +33,13 @@ def manifest(lib: Library, filter: ClipFilter | None = None) -> Iterator[bytes]:
     """A manifest of the clips that pass a filter, sorted by path, as blocks of UTF-8.
 
     A clip that came without a path has the name of its file as its path. The columns of metadata
-    are called `meta.KEY`, which is metadata whatever the key is.
+    are called `meta.KEY`, which is metadata whatever the key is. Raises BadField, before the first
+    block.
     """
-    passing = resolved_filter(lib, filter)
+    return _blocks(lib, resolved_filter(lib, filter))
+
+
+def _blocks(lib: Library, passing: ClipFilter) -> Iterator[bytes]:
     with lib.store.read() as tx:
         ids, keys = clip_listing.ids_by_path(tx, passing)
     yield _lines([["path", *LABELS, *HINTS, KEYPOSES, *(META + key for key in keys)]])

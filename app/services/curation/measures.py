@@ -11,6 +11,7 @@ import numpy as np
 from app.analysis.quality.definitions import DEFINITIONS, Definition
 from app.numerics.arrays import BoolArray, FloatArray
 from app.search.index.labels import LabelView
+from app.services.library.filters import resolved_filter
 from app.services.library.library import Library
 from app.store.clips import quality
 from app.store.clips.filter import ClipFilter
@@ -73,7 +74,7 @@ def summaries(lib: Library, filter: ClipFilter) -> list[MeasureSummary]:
     """All measures of the clips that can be found, and counts of those that pass the filter."""
     lib.index.catch_up(lib.store)
     labels = lib.index.state[1].labels
-    every, passing = labels.mask(ClipFilter()), labels.mask(filter)
+    every, passing = labels.mask(ClipFilter()), labels.mask(resolved_filter(lib, filter))
     return [
         _summary(definition, labels.measured(name)[every], labels.measured(name)[passing])
         for name, definition in ALL_DEFINITIONS.items()

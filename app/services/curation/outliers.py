@@ -11,6 +11,7 @@ from app.errors import Conflict, NotFound
 from app.kinedex_error import Place
 from app.search.outliers.outliers import Outlier, OutlierReason, far_ones, swapped_ones
 from app.services.clips.catalogue import get_clip, update_clip
+from app.services.library.filters import resolved_filter
 from app.services.library.library import Library
 from app.store.clips import repository as clips
 from app.store.clips.filter import ClipFilter
@@ -50,7 +51,7 @@ def list_outliers(lib: Library, filter: ClipFilter, limit: int = 10) -> list[Lab
         *far_ones(view.vectors(numbers), codes),
         *swapped_ones(view.labels.measured("dominance")[numbers], codes),
     ]
-    passes = view.labels.mask(filter)
+    passes = view.labels.mask(resolved_filter(lib, filter))
     ids = view.labels.ids[numbers]
     with lib.store.read() as tx:
         dismissed = dismissed_outliers.every(tx)
