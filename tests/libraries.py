@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import shutil
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -63,6 +64,15 @@ def ready_library(
         upload(opened, clip, license="CC0-1.0", source="demo")
     models.request_fit(opened)
     work(opened.settings)
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
+def mine(ready_library: Library, tmp_path: Path) -> Iterator[Library]:
+    """A copy of the ready library, which a test may change."""
+    shutil.copytree(ready_library.settings.data_dir, tmp_path / "data")
+    opened = Library.open(settings_for(tmp_path))
     yield opened
     opened.close()
 

@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from tests.libraries import clip_of, lib, ready_clips, ready_library, some_demo_clips
+from tests.libraries import clip_of, lib, mine, ready_clips, ready_library, some_demo_clips
 
-__all__ = ["clip_of", "lib", "ready_clips", "ready_library", "some_demo_clips"]
+__all__ = ["clip_of", "lib", "mine", "ready_clips", "ready_library", "some_demo_clips"]

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-import shutil
 import zipfile
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -32,16 +29,6 @@ from app.store.clips.filter import ClipFilter
 from app.store.clips.license_policy import only_licenses
 from app.store.clips.record import ClipRecord
 from app.store.collections import NewItem
-from tests.libraries import settings_for
-
-
-@pytest.fixture
-def mine(ready_library: Library, tmp_path: Path) -> Iterator[Library]:
-    """A copy that a test may change."""
-    shutil.copytree(ready_library.settings.data_dir, tmp_path / "data")
-    lib = Library.open(settings_for(tmp_path))
-    yield lib
-    lib.close()
 
 
 @pytest.fixture

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import io
-import shutil
-from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,21 +19,12 @@ from app.services.training.training_set import read_training_set
 from app.store.clips import keypose_annotations
 from app.store.clips.record import ClipRecord, ClipState
 from tests.formats.npz.files import npz
-from tests.libraries import settings_for, work
+from tests.libraries import work
 
 ROUNDING = 1e-4
 """Meters: six decimals of centimeters and degrees, along chains of joints."""
 CUT = EditStep(EditKind.CUT, start=0.5, end=1.5)
 MIRROR = EditStep(EditKind.MIRROR)
-
-
-@pytest.fixture
-def mine(ready_library: Library, tmp_path: Path) -> Iterator[Library]:
-    """A copy that a test may change."""
-    shutil.copytree(ready_library.settings.data_dir, tmp_path / "data")
-    lib = Library.open(settings_for(tmp_path))
-    yield lib
-    lib.close()
 
 
 def clip_of(lib: Library, person: str, task: str) -> ClipRecord:

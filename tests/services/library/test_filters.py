@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
-from collections.abc import Iterator
-from pathlib import Path
-
 import pytest
 
 from app.errors import BadField
@@ -19,16 +15,6 @@ from app.services.library.label_tree import get_tree, put_parents
 from app.services.library.library import Library
 from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipRecord
-from tests.libraries import settings_for
-
-
-@pytest.fixture
-def mine(ready_library: Library, tmp_path: Path) -> Iterator[Library]:
-    """A copy that a test may change."""
-    shutil.copytree(ready_library.settings.data_dir, tmp_path / "data")
-    lib = Library.open(settings_for(tmp_path))
-    yield lib
-    lib.close()
 
 
 @pytest.fixture

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
-from collections.abc import Iterator
-from pathlib import Path
-
 import pytest
 
 from app.demo import demo_clips
@@ -18,16 +14,7 @@ from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
 from app.services.searches import searches
 from app.store.clips.record import ClipRecord
-from tests.libraries import settings_for, upload, work
-
-
-@pytest.fixture
-def mine(ready_library: Library, tmp_path: Path) -> Iterator[Library]:
-    """A copy that a test may change."""
-    shutil.copytree(ready_library.settings.data_dir, tmp_path / "data")
-    lib = Library.open(settings_for(tmp_path))
-    yield lib
-    lib.close()
+from tests.libraries import upload, work
 
 
 @pytest.fixture
