@@ -156,3 +156,15 @@ def test_the_directory_of_the_database_is_made(tmp_path: Path) -> None:
     with database.read() as tx:
         assert tx.exec_driver_sql("SELECT 1").scalar_one() == 1
     database.close()
+
+
+@pytest.mark.sqlite_only
+def test_a_file_is_written_anew_unless_it_is_too_large(
+    store: Store, add_clip: AddClip, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clip = add_clip("walk")
+    assert store.rebuild()
+    with store.read() as tx:
+        assert get(tx, clip.id) == clip
+    monkeypatch.setattr(engine, "MAX_REBUILT_BYTES", 0)
+    assert not store.rebuild()
