@@ -91,11 +91,12 @@ class Store:
     def finish_removals(self) -> int:
         """Removes the files that are recorded for removal; returns their number.
 
-        A file that cannot be removed now stays recorded, and a later call tries again.
+        A file that cannot be removed now stays recorded, and a later call tries again. While
+        somebody copies the library (`RemovalHold`), no file is removed.
         """
         try:
-            with self.database.write() as tx:
-                return removals.finish(tx, self.files)
+            with self.database.write() as tx, self.files.removal_hold.free() as is_free:
+                return removals.finish(tx, self.files) if is_free else 0
         except StorageError as problem:
             _log.warning("files could not be removed yet: %s", problem.detail)
             return 0

@@ -22,6 +22,7 @@ from app.store.files.hash_check import SHA256, HashChecker
 from app.store.files.id_file import read_id
 from app.store.files.locked_file import create_locked, remove_if_abandoned
 from app.store.files.quarantine import FOLDER, Quarantine
+from app.store.files.removal_hold import RemovalHold
 from app.store.folders import make_private_synced, sync_folder
 
 CHUNK_BYTES = 1024 * 1024
@@ -69,6 +70,7 @@ class FileStore:
         self.root = root
         self.library_id = library_id
         self.quarantine = Quarantine(root / FOLDER)
+        self.removal_hold = RemovalHold(root)
         self.suspects: set[str] = set()
         """Files that somebody found missing or damaged; `FileWatch` takes them and looks again."""
         self._temporaries = root / "tmp"

@@ -1,9 +1,9 @@
 """Copies a whole library, its database and its files, while it is in use.
 
 A copy is a normal data directory: Kinedex can run on it. The database is copied as one snapshot.
-Files never change, because their names are the hashes of their content, so they are copied before
-and after the snapshot. A file that was deleted meanwhile is missing in the copy. Then the database
-is copied again, until no file is missing.
+Files never change, because their names are the hashes of their content, so they are copied after
+the snapshot. No file is removed until then (`RemovalHold`): a clip may be deleted meanwhile, and
+its file goes when the copy is complete.
 
 The copy of a PostgreSQL database is a dump (`dump`) beside the files; `kinedex db restore` loads it
 into an empty database.
@@ -20,8 +20,7 @@ from __future__ import annotations
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -46,10 +45,6 @@ DATABASE, FILES = "kinedex.sqlite3", "files"
 
 PART = ".part"
 """Suffix of the folder of an unfinished copy."""
-
-MAX_TRIES = 10
-"""Copies of the database. One more is needed each time that a file in the last one was deleted
-before it was copied."""
 
 Progress = Callable[[int, int], None]
 """Called with the number of copied files and the number of all files."""
@@ -133,47 +128,28 @@ def _copy_and_rename(store: Store, part: Path, path: Path, progress: Progress | 
 
 
 def _copy(store: Store, part: Path, progress: Progress | None) -> frozenset[str]:
-    """Copies files and database into the folder `part`; returns the names of the files."""
+    """Copies database and files into the folder `part`; returns the names of the files."""
     with store.read() as tx:
-        needed = references.referenced_in_any_schema(tx)
         library_id = library.library_id_if_any(tx)
     make_private_synced(part / FILES)
     if library_id is not None:
         write_id(part / FILES, library_id)
     files = _Files(store.files, FileStore(part / FILES))
-    _add(files, needed, progress)
-    lost: set[str] = set()
-    for _ in range(MAX_TRIES):
-        lost_before = lost
-        with _moment_of(store.database, part) as moment:
-            _add(files, moment.needed, progress)
-            lost = files.missing | files.damaged
-            if not lost:
-                moment.finish()
-                for sha256 in frozenset(files.target) - moment.needed:
-                    files.target.remove(sha256)
-                return moment.needed
-        if lost == lost_before:  # the library itself lacks them: another copy would not help
-            break
-    raise _incomplete(files)
+    with store.files.removal_hold.held():
+        needed = _copy_database(store.database, part)
+        _add(files, needed, progress)
+    if files.missing or files.damaged:
+        raise _incomplete(files)
+    return needed
 
 
-@dataclass(frozen=True, slots=True)
-class _Moment:
-    """A moment of the database. needed: the names of its files; finish: completes its copy."""
-
-    needed: frozenset[str]
-    finish: Callable[[], None]
-
-
-@contextmanager
-def _moment_of(database: Database, part: Path) -> Iterator[_Moment]:
-    """The present moment. A dump takes long, so it waits for `finish`: the files are there then."""
+def _copy_database(database: Database, part: Path) -> frozenset[str]:
+    """Copies the database as it is now; returns the names of the files that it needs."""
     if database.is_sqlite:
-        yield _Moment(_copy_database(database, part / DATABASE), lambda: None)
-    else:
-        with dump.snapshot(database) as taken:
-            yield _Moment(taken.needed, partial(taken.dump, part / DUMP))
+        return _copy_sqlite(database, part / DATABASE)
+    with dump.snapshot(database) as taken:
+        taken.dump(part / DUMP)
+        return taken.needed
 
 
 def _incomplete(files: _Files) -> StorageError:
@@ -186,12 +162,11 @@ def _incomplete(files: _Files) -> StorageError:
     )
 
 
-def _copy_database(database: Database, path: Path) -> frozenset[str]:
-    """Copies the database and replaces an earlier copy; returns the names of the files it needs.
+def _copy_sqlite(database: Database, path: Path) -> frozenset[str]:
+    """As `_copy_database`, into a file.
 
     Raises DatabaseDamaged, because the copy has the same pages as the original, and its damage.
     """
-    path.unlink(missing_ok=True)
     database.copy_to(path)
     copy = Database.at(path)
     try:
@@ -210,10 +185,8 @@ def _copy_database(database: Database, path: Path) -> frozenset[str]:
 
 
 def _add(files: _Files, names: frozenset[str], progress: Progress | None) -> None:
-    """Copies the files that the copy does not have yet; records those that cannot be copied."""
-    files.missing, files.damaged = set(), set()
-    waiting = names - frozenset(files.target)
-    for done, sha256 in enumerate(sorted(waiting), len(names) - len(waiting) + 1):
+    """Copies the files; records those that cannot be copied."""
+    for done, sha256 in enumerate(sorted(names), 1):
         try:
             _copy_file(files, sha256)
         except (NotFound, FileNotFoundError):
