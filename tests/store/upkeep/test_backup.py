@@ -133,27 +133,21 @@ def test_an_existing_path_is_never_replaced(store: Store, add: Add, tmp_path: Pa
     assert (tmp_path / "file").read_text() == "mine"
 
 
-@pytest.mark.sqlite_only
-def test_a_clip_deleted_before_it_is_copied_is_left_out(
-    store: Store, add: Add, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_a_clip_deleted_after_the_database_was_copied_is_in_the_copy(
+    store: Store, add: Add, tmp_path: Path
 ) -> None:
-    kept, doomed = add("kept"), add("doomed")
-    copy_to, moments = Database.copy_to, []
+    deleted, last = add("deleted"), add("last")
 
-    def copy_then_delete(database: Database, path: Path) -> None:
-        """Adds a clip before the copy of the database, and deletes one right after it."""
-        late = add(f"late {len(moments)}")
-        if not moments:
-            delete(store, doomed)  # whose file was copied already
-        copy_to(database, path)
-        if len(moments) < 2:
-            delete(store, late)
-        moments.append(late.name)
+    def delete_once(done: int, _: int) -> None:
+        if done == 1:  # whose file is the next one
+            for clip in (deleted, last):
+                delete(store, clip)
 
-    monkeypatch.setattr(Database, "copy_to", copy_then_delete)
-    made = back_up(store, tmp_path / "copy")
-    assert moments == ["late 0", "late 1", "late 2"]
-    assert check_whole(made) == {kept.name, "late 2"}
+    made = back_up(store, tmp_path / "copy", delete_once)
+    assert check_whole(made) == {"deleted", "last"}
+    add("next")  # any change removes the files whose removal waited
+    assert not store.files.has(deleted.sha256)
+    assert not store.files.has(last.sha256)
 
 
 def test_every_missing_or_damaged_file_is_named_and_nothing_is_copied(
