@@ -7,6 +7,8 @@ their onset strength, for motions their stops.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import scipy
 from numpy.lib.stride_tricks import sliding_window_view
@@ -62,7 +64,7 @@ def likely_periods(
     best = grid[peaks[np.argsort(-salience[peaks], kind="stable")][:count]]
     found: list[float] = []
     for period in (float(p / ratio) for p in best for ratio in RATIOS):
-        new = all(abs(np.log(period / other)) > APART for other in found)
+        new = all(abs(math.log(period / other)) > APART for other in found)
         if new and shortest <= period <= longest:
             found.append(period)
     return found
@@ -91,8 +93,9 @@ def track(strength: FloatArray, period: float, tightness: float, reach: float = 
     total = np.concatenate([np.full(furthest, -np.inf), strength])
     behind = sliding_window_view(total, len(gaps))
     for first in range(nearest, count, nearest):
-        reached = np.add(behind[first : first + nearest][: count - first], cost).max(axis=1)
-        here = total[furthest + first : furthest + first + len(reached)]
+        stop = min(first + nearest, count)
+        reached = np.maximum.reduce(behind[first:stop] + cost, axis=1)
+        here = total[furthest + first : furthest + stop]
         np.add(here, np.maximum(reached, 0.0, out=reached), out=here)
     last = max(0, count - round(period))
     beats = [last + int(total[furthest + last :].argmax())]

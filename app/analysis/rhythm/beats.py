@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import lru_cache
 
 import numpy as np
 import scipy
@@ -292,13 +293,19 @@ def _smoothed(beats: FloatArray, stops: Stops) -> FloatArray:
     degree = min(1 + len(beats) // BEATS_PER_BEND, MAX_BENDS)
     if int(near.sum()) < degree + 2:
         return beats
-    numbers = 2.0 * np.arange(len(beats)) / (len(beats) - 1) - 1.0
-    polynomials = legvander(numbers, degree)
+    polynomials = _polynomials(len(beats), degree)
     basis, weights = polynomials[nearest[near]], stops.weights[near]
     stiff = np.diag([0.0, 0.0, *[STIFFNESS] * (degree - 1)])
     left = (basis * weights[:, None]).T @ basis + stiff
     right = (basis * weights[:, None]).T @ stops.times[near]
     return np.asarray(polynomials @ np.linalg.solve(left, right))
+
+
+@lru_cache(maxsize=1024)
+def _polynomials(beats: int, degree: int) -> FloatArray:
+    """(beats, degree + 1) the Legendre polynomials at evenly spaced beats, -1..1."""
+    # Cached, because every tempo of every clip asks for them.
+    return np.asarray(legvander(2.0 * np.arange(beats) / (beats - 1) - 1.0, degree))
 
 
 def continued(beats: FloatArray, duration: float) -> FloatArray:
