@@ -61,13 +61,17 @@ class Parts:
     @property
     def duration(self) -> float:
         """Seconds of each part."""
-        return self.rows.shape[2] / self.rate
+        return float(self.rows.shape[2] / self.rate)
 
 
 class SignSeries:
-    """The numbers of each of the N >= 2 frames of a track."""
+    """The numbers of each of the N >= 2 frames of a track.
+
+    frames: N. rate: Hz.
+    """
 
     def __init__(self, track: BodyTrack) -> None:
+        self.frames, self.rate = track.frames, track.rate
         self._track = track
         self._cos, self._sin = np.cos(track.heading), np.sin(track.heading)
         self._poses = np.ascontiguousarray(track.local[:, _BODY].reshape(track.frames, -1).T)

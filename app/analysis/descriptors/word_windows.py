@@ -29,17 +29,17 @@ PARTS_AT_ONCE = 128
 """Windows that are described at a time. It bounds the memory to 30 MB."""
 
 
-def word_window_arrays(track: BodyTrack, channels: FloatArray) -> dict[str, FloatArray]:
-    """The two arrays, for a track of n frames and its channels (n, 26).
+def word_window_arrays(series: SignSeries, channels: FloatArray) -> dict[str, FloatArray]:
+    """The two arrays, for the series of a track of n frames and its channels (n, 26).
 
     word_windows: (w, 175) float16. word_window_spans: (w, 2) float32, start and end in seconds.
     """
-    rate, series = track.rate, SignSeries(track)
+    rate, count = series.rate, series.frames
     inputs, spans = [], []
     for seconds, hop in SECONDS:
-        frames = min(round(seconds * rate), track.frames)
-        firsts = first_frames(track.frames, frames, round(hop * rate))
-        inputs.append(_inputs(series, channels, rate, firsts, frames))
+        frames = min(round(seconds * rate), count)
+        firsts = first_frames(count, frames, round(hop * rate))
+        inputs.append(_inputs(series, channels, firsts, frames))
         spans.append(np.stack([firsts, firsts + frames], axis=1) / rate)
     return {
         WORD_WINDOWS: np.vstack(inputs).astype(np.float16),
@@ -62,14 +62,12 @@ def word_inputs(
     channels: (n, 26) of the track; firsts: (w,) the first frame of each part; frames: the length of
     each, at least 2.
     """
-    return _inputs(SignSeries(track), channels, track.rate, firsts, frames)
+    return _inputs(SignSeries(track), channels, firsts, frames)
 
 
-def _inputs(
-    series: SignSeries, channels: FloatArray, rate: float, firsts: IntArray, frames: int
-) -> FloatArray:
+def _inputs(series: SignSeries, channels: FloatArray, firsts: IntArray, frames: int) -> FloatArray:
     found = [np.zeros((0, INPUT_WIDTH))]
     for some in np.split(firsts, range(PARTS_AT_ONCE, len(firsts), PARTS_AT_ONCE)):
-        statistics = statistics_of_parts(channels, rate, some, frames)
+        statistics = statistics_of_parts(channels, series.rate, some, frames)
         found.append(np.hstack([statistics, signs_of_parts(series, some, frames)]))
     return np.vstack(found)

@@ -11,7 +11,6 @@ import math
 
 import numpy as np
 import scipy
-from numpy.lib.stride_tricks import sliding_window_view
 
 from app.numerics.arrays import FloatArray, IntArray
 
@@ -91,7 +90,8 @@ def track(strength: FloatArray, period: float, tightness: float, reach: float = 
         return np.zeros(0, dtype=np.int64)
     # Row f of `behind` holds `total` of the frames f - furthest .. f - nearest.
     total = np.concatenate([np.full(furthest, -np.inf), strength])
-    behind = sliding_window_view(total, len(gaps))
+    # numpy's sliding_window_view takes longer than a step of the loop below.
+    behind = np.ndarray((len(total) - len(gaps) + 1, len(gaps)), buffer=total, strides=(8, 8))
     for first in range(nearest, count, nearest):
         stop = min(first + nearest, count)
         reached = np.maximum.reduce(behind[first:stop] + cost, axis=1)

@@ -212,7 +212,7 @@ def _log_energy(energy: FloatArray, rate: float) -> FloatArray:
     highest = float(energy.max(initial=0.0))
     if not highest > 0:
         return np.zeros(len(energy))
-    level = np.log(energy + max(ENERGY_FLOOR * float(np.median(energy)), 1e-6 * highest))
+    level = np.log(energy + max(ENERGY_FLOOR * float(median(energy)), 1e-6 * highest))
     return np.asarray(level - scipy.ndimage.gaussian_filter1d(level, TREND * rate, mode="reflect"))
 
 
@@ -259,9 +259,10 @@ def _track_tempo(stops: Stops, period: float) -> _TempoTrack | None:
         return None
     beat = float(median(steps))
     off = (stops.times[:, None] - beats) / beat
-    nearest = off[np.arange(len(off)), np.abs(off).argmin(axis=1)]
+    away = np.abs(off)
+    nearest = off[np.arange(len(off)), away.argmin(axis=1)]
     weights, total = stops.weights, float(stops.weights.sum())
-    with_stop = float((weights[:, None] * (np.abs(off) < MAX_STOP_OFFSET)).max(axis=0).mean())
+    with_stop = float((weights[:, None] * (away < MAX_STOP_OFFSET)).max(axis=0).mean())
     on_beat = float(weights[np.abs(nearest) < MAX_STOP_OFFSET].sum()) / total
     phase_length = float(np.abs((weights * np.exp(2j * np.pi * nearest)).sum())) / total
     octaves = np.log2(60.0 / beat / USUAL_TEMPO)
