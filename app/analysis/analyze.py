@@ -38,8 +38,9 @@ from app.analysis.descriptors.motion_sample import motion_sample
 from app.analysis.descriptors.motion_shape import motion_shape
 from app.analysis.descriptors.motion_vector import describe, motion_vector, narrow, wide
 from app.analysis.descriptors.motion_volume import decompose
-from app.analysis.descriptors.movement_signs import movement_signs
+from app.analysis.descriptors.movement_signs import signs_of_parts
 from app.analysis.descriptors.pose_cover import pose_cover
+from app.analysis.descriptors.sign_series import SignSeries
 from app.analysis.descriptors.windows import WINDOW_SCALES, window_arrays
 from app.analysis.descriptors.word_windows import word_window_arrays
 from app.analysis.energy.energy import energies
@@ -103,7 +104,7 @@ def analyze(
         track, smooth = both_tracks(motion)
         parts = _Parts(smooth)
         arrays: dict[str, NDArray[Any]] = {**_for_search(parts)}
-        arrays |= word_window_arrays(parts.track, symbol_features(parts.track))
+        arrays |= word_window_arrays(parts.sign_series, parts.channels_of_track)
         arrays["moments"] = moments(parts.track)
     with times.stage("symbol"):
         arrays |= parts.symbol
@@ -164,6 +165,11 @@ class _Parts:
         """The active part of the track, which descriptors of the whole clip are computed from."""
         return self.track.part(*self.span)
 
+    @property
+    def is_whole(self) -> bool:
+        """Whether the whole track is active."""
+        return self.active.frames == self.track.frames
+
     @cached_property
     def features(self) -> FloatArray:
         """(n, 82) the frame features at 30 Hz."""
@@ -177,8 +183,7 @@ class _Parts:
     @cached_property
     def described(self) -> FloatArray:
         """(3606,) the numbers from which motion vectors are projected."""
-        is_whole = self.active.frames == self.track.frames
-        return describe(self.features if is_whole else frame_features(self.active))
+        return describe(self.features if self.is_whole else frame_features(self.active))
 
     @cached_property
     def paced_vector(self) -> FloatArray:
@@ -193,7 +198,23 @@ class _Parts:
     @cached_property
     def channels(self) -> FloatArray:
         """(a, 26) the channels of the motion symbol."""
-        return symbol_features(self.active)
+        return self.channels_of_track if self.is_whole else symbol_features(self.active)
+
+    @cached_property
+    def channels_of_track(self) -> FloatArray:
+        """(n, 26) the channels of the whole track."""
+        return symbol_features(self.track)
+
+    @cached_property
+    def sign_series(self) -> SignSeries:
+        """The numbers of the frames from which signs of movement are made."""
+        return SignSeries(self.track)
+
+    @property
+    def movement_signs(self) -> FloatArray:
+        """(44,) the signs of the active part."""
+        first, stop = self.span
+        return np.asarray(signs_of_parts(self.sign_series, np.array([first]), stop - first)[0])
 
     @cached_property
     def symbol(self) -> dict[str, FloatArray]:
@@ -226,7 +247,7 @@ _FLOAT32: dict[str, Callable[[_Parts], FloatArray]] = {
     "angle_sample": lambda parts: angle_sample(parts.active, parts.cycles),
     "motion_shape": lambda parts: motion_shape(parts.active, parts.cycles),
     "symbol_statistics": lambda parts: symbol_statistics(parts.channels, parts.track.rate),
-    "movement_signs": lambda parts: movement_signs(parts.active),
+    "movement_signs": lambda parts: parts.movement_signs,
 }
 """How each array that is stored as float32 is computed."""
 _WINDOWS = tuple(name for scale in WINDOW_SCALES for name in (scale.vectors, scale.spans))

@@ -41,3 +41,20 @@ def quantiles(values: FloatArray, shares: Sequence[float]) -> list[FloatArray]:
         at = ordered[low] + rise * weight if weight < 0.5 else ordered[high] - rise * (1 - weight)
         found.append(np.asarray(at))
     return found
+
+
+def quantiles_of_sorted(ordered: FloatArray, shares: FloatArray) -> FloatArray:
+    """(k, ...) the quantile `shares[i]` (0..1) of `ordered[i]` along its last axis.
+
+    shares: (k,). ordered: (k, ..., n), n >= 1, sorted along its last axis, without NaN. NumPy
+    sorts many short rows in less time than it needs to find the places of one.
+    """
+    places = shares * (ordered.shape[-1] - 1)
+    lows = places.astype(np.int64)
+    highs = np.minimum(lows + 1, ordered.shape[-1] - 1)
+    rows = np.arange(len(ordered))
+    low, high = ordered[rows, ..., lows], ordered[rows, ..., highs]
+    weights = (places - lows).reshape(-1, *[1] * (ordered.ndim - 2))
+    rise = high - low
+    # as numpy does, from the nearer end, so that the result rises with the share
+    return np.asarray(np.where(weights < 0.5, low + rise * weights, high - rise * (1 - weights)))

@@ -22,6 +22,7 @@ import pytest
 
 from app.analysis.descriptors.active_part import active_part
 from app.analysis.descriptors.movement_signs import movement_signs
+from app.analysis.descriptors.sign_series import SignSeries
 from app.analysis.descriptors.word_windows import (
     WORD_WINDOW_SPANS,
     WORD_WINDOWS,
@@ -133,7 +134,7 @@ def _of_fold(
     owners, spans, scores = [], [], []
     for number, stream in enumerate(streams):
         track = smooth_track(motion_of(stream.body))
-        arrays = word_window_arrays(track, symbol_features(track))
+        arrays = word_window_arrays(SignSeries(track), symbol_features(track))
         windows = arrays[WORD_WINDOWS].astype(np.float64)
         owners.append(np.full(len(windows), number))
         spans.append(arrays[WORD_WINDOW_SPANS].astype(np.float64))

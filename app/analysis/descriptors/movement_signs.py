@@ -14,21 +14,15 @@ that rest is a finite number.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
 
 import numpy as np
+import scipy
 
-from app.motion.frame.body_frame import BodyTrack, turned
-from app.motion.roles.joint_roles import SUN_ROLES, JointRole
+from app.analysis.descriptors.sign_series import ROWS, SPEED_ROLES, Parts, SignSeries
+from app.motion.frame.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray, IntArray
-
-_R = JointRole
-
-SPEED_ROLES = (
-    *(_R.LEFT_HAND, _R.RIGHT_HAND, _R.LEFT_ELBOW, _R.RIGHT_ELBOW),
-    *(_R.LEFT_FOOT, _R.RIGHT_FOOT, _R.LEFT_KNEE, _R.RIGHT_KNEE, _R.HEAD),
-)
-"""The joints whose speeds are signs."""
+from app.numerics.quantiles import median, quantiles_of_sorted
 
 SIGNS: tuple[str, ...] = (
     *("turn", "turn_range", "turn_rate", "turn_to_left"),
@@ -64,40 +58,36 @@ STILL = 0.2
 """Body lengths per second: a body that travels more slowly goes nowhere."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Parts:
-    """w parts of a motion, n frames each, as in `BodyTrack`.
+_FASTER = {
+    "fast_hand": ("left_hand_speed", "right_hand_speed"),
+    "fast_foot": ("left_foot_speed", "right_foot_speed"),
+}
+"""The rows of which the larger one in each frame is looked at."""
 
-    positions, local: (w, n, 13, 3); origin: (w, n, 3); heading: (w, n).
-    """
-
-    positions: FloatArray
-    local: FloatArray
-    origin: FloatArray
-    heading: FloatArray
-    body_length: float
-    rate: float
-
-    @property
-    def frames(self) -> int:
-        """The number of frames of each part."""
-        return int(self.heading.shape[1])
-
-    @property
-    def duration(self) -> float:
-        """Seconds of each part."""
-        return self.frames / self.rate
-
-    def velocity(self) -> FloatArray:
-        """(w, n, 3) the velocity of the hips in the body frame, body lengths per second."""
-        steps = np.gradient(self.origin, axis=1) * (self.rate / self.body_length)
-        flat = turned(steps.reshape(-1, 1, 3), -self.heading.ravel())
-        return flat.reshape(steps.shape)
+_EXTREMES = {
+    "top_speed": ("speed", 0.95),
+    "floor": ("lowest", FLOOR_QUANTILE),
+    "flight": ("lower_foot", HIGH),
+    "low_hips": ("hips", LOW),
+    "middle_hips": ("hips", 0.5),
+    "high_hips": ("hips", HIGH),
+    "hand_peak": ("fast_hand", HIGH),
+    "foot_peak": ("fast_foot", HIGH),
+    "hand_height": ("higher_hand", 0.95),
+    "both_hands_height": ("lower_hand", 0.95),
+    "foot_height": ("higher_foot", HIGH),
+    "knee_height": ("higher_knee", HIGH),
+    "lean": ("lean", 0.95),
+    "hand_spread": ("hands_apart", 0.9),
+    "foot_spread": ("feet_apart", 0.95),
+}
+"""The row and the share of each quantile over the frames of a part."""
 
 
 def movement_signs(track: BodyTrack) -> FloatArray:
     """(44,) the SIGNS of a motion of n >= 2 frames."""
-    return np.asarray(signs_of_parts(track, np.zeros(1, dtype=np.int64), track.frames)[0])
+    whole = np.zeros(1, dtype=np.int64)
+    return np.asarray(signs_of_parts(SignSeries(track), whole, track.frames)[0])
 
 
 def cycle_of(signs: FloatArray) -> tuple[float, float]:
@@ -106,36 +96,48 @@ def cycle_of(signs: FloatArray) -> tuple[float, float]:
     return float(likeness), float(np.exp(lag)) - SHORT
 
 
-def signs_of_parts(track: BodyTrack, firsts: IntArray, frames: int) -> FloatArray:
+def signs_of_parts(series: SignSeries, firsts: IntArray, frames: int) -> FloatArray:
     """(w, 44) the SIGNS of parts of a motion, each as `movement_signs` of the part alone.
 
     firsts: (w,) the first frame of each part; frames: the length of each, at least 2. Parts are
     computed together, because calls of NumPy for each would take most of the time.
     """
-    at = np.asarray(firsts)[:, None] + np.arange(frames)
-    parts = _Parts(
-        positions=track.positions[at],
-        local=track.local[at],
-        origin=track.origin[at],
-        heading=track.heading[at],
-        body_length=track.body_length,
-        rate=track.rate,
-    )
-    speeds = np.linalg.norm(np.gradient(parts.local, axis=1), axis=3) * parts.rate  # (w, n, 13)
+    parts = series.of_parts(np.asarray(firsts), frames)
+    means = dict(zip(ROWS, parts.rows.mean(axis=2), strict=True))
+    extremes = _extremes(parts)
     columns = [
         *_turning(parts),
-        *_travel(parts),
-        *_height(parts),
+        *_travel(parts, means, extremes),
+        *_height(parts, extremes),
         *_rhythm(parts),
-        *_limbs(parts, speeds),
+        *_limbs(parts, means, extremes),
+        *(_log(means[f"{role.value}_speed"]) for role in SPEED_ROLES),
     ]
-    means = _log(speeds[:, :, [SUN_ROLES.index(role) for role in SPEED_ROLES]].mean(axis=1))
-    return np.hstack([np.stack(columns, axis=1), means])
+    return np.stack(columns, axis=1)
 
 
-def _turning(parts: _Parts) -> list[FloatArray]:
+def _extremes(parts: Parts) -> dict[str, FloatArray]:
+    """The quantiles (w,) of _EXTREMES, by name. All are read from one array of sorted rows."""
+    rows = list(dict.fromkeys(row for row, _ in _EXTREMES.values()))
+    ordered = np.sort([_row(parts, row) for row in rows], axis=2)
+    places = [rows.index(row) for row, _ in _EXTREMES.values()]
+    shares = np.array([share for _, share in _EXTREMES.values()])
+    return dict(zip(_EXTREMES, quantiles_of_sorted(ordered[places], shares), strict=True))
+
+
+def _row(parts: Parts, name: str) -> FloatArray:
+    """(w, n) a row of `parts`; or the speed of the body, or of the faster hand or foot."""
+    if name == "speed":
+        return np.asarray(np.hypot(parts["to_left"], parts["forward"]))
+    if name in _FASTER:
+        one, other = _FASTER[name]
+        return np.asarray(np.maximum(parts[one], parts[other]))
+    return parts[name]
+
+
+def _turning(parts: Parts) -> list[FloatArray]:
     """The turn from start to end, its range, the mean rate, and the turn to the left."""
-    heading = parts.heading
+    heading = parts["heading"]
     net = heading[:, -1] - heading[:, 0]
     rate = np.abs(np.diff(heading, axis=1)).sum(axis=1) / parts.duration
     span = heading.max(axis=1) - heading.min(axis=1)
@@ -143,29 +145,25 @@ def _turning(parts: _Parts) -> list[FloatArray]:
     return [np.tanh(np.abs(net) / HALF_TURN), _log(span), np.log(0.3 + rate), limited]
 
 
-def _travel(parts: _Parts) -> list[FloatArray]:
+def _travel(
+    parts: Parts, means: Mapping[str, FloatArray], extremes: Mapping[str, FloatArray]
+) -> list[FloatArray]:
     """Mean and top speed; the shares forward, to the left and to any side; and straightness."""
-    velocity = parts.velocity()
-    speed = np.hypot(velocity[..., 0], velocity[..., 2])
-    mean = speed.mean(axis=1)
-    left, forward = velocity[..., 0].mean(axis=1), velocity[..., 2].mean(axis=1)
-    aside = np.abs(velocity[..., 0]).mean(axis=1)
-    moved = (parts.origin[:, -1] - parts.origin[:, 0])[:, [0, 2]] / parts.body_length
-    straightness = np.hypot(moved[:, 0], moved[:, 1]) / (0.3 + mean * parts.duration)
-    shares = [share / (STILL + mean) for share in (forward, left, aside)]
-    return [_log(mean), _log(np.quantile(speed, 0.95, axis=1)), *shares, straightness]
+    mean = _row(parts, "speed").mean(axis=1)
+    aside = np.abs(parts["to_left"]).mean(axis=1)
+    straightness = parts.way / (0.3 + mean * parts.duration)
+    shares = [share / (STILL + mean) for share in (means["forward"], means["to_left"], aside)]
+    return [_log(mean), _log(extremes["top_speed"]), *shares, straightness]
 
 
-def _height(parts: _Parts) -> list[FloatArray]:
+def _height(parts: Parts, extremes: Mapping[str, FloatArray]) -> list[FloatArray]:
     """Height and share of flight; rise and drop of the hips; their median and lowest height."""
-    heights = parts.positions[..., 1] / parts.body_length  # (w, n, 13)
-    floor = np.quantile(heights.min(axis=2), FLOOR_QUANTILE, axis=1)
-    lower_foot = _of(heights, _R.LEFT_FOOT, _R.RIGHT_FOOT).min(axis=2) - floor[:, None]
-    hips = _of(heights, _R.HIPS)[:, :, 0]
-    low, median, high = np.quantile(hips, (LOW, 0.5, HIGH), axis=1)
+    floor = extremes["floor"]
+    low, median, high = (extremes[name] for name in ("low_hips", "middle_hips", "high_hips"))
+    in_air = parts["lower_foot"] - floor[:, None] > IN_AIR
     return [
-        np.log(0.02 + np.maximum(np.quantile(lower_foot, HIGH, axis=1), 0.0)),
-        np.sqrt((lower_foot > IN_AIR).mean(axis=1)),
+        np.log(0.02 + np.maximum(extremes["flight"] - floor, 0.0)),
+        np.sqrt(in_air.mean(axis=1)),
         np.log(0.03 + high - median),
         np.log(0.03 + median - low),
         median - floor,
@@ -173,31 +171,32 @@ def _height(parts: _Parts) -> list[FloatArray]:
     ]
 
 
-def _rhythm(parts: _Parts) -> list[FloatArray]:
+def _rhythm(parts: Parts) -> list[FloatArray]:
     """How well a cycle repeats and how long it takes, how many poses there are, and the duration.
 
     The number of different poses is the exponential of the entropy of the principal components.
     """
-    poses = parts.local.reshape(*parts.heading.shape, -1)
-    poses = poses - poses.mean(axis=1, keepdims=True)
+    poses = parts.poses - parts.poses.mean(axis=2, keepdims=True)
     likeness, lag = _cycle(poses, parts.rate)
-    variances = np.maximum(np.linalg.eigvalsh(poses.transpose(0, 2, 1) @ poses), 0.0)
+    by_part = poses.transpose(1, 0, 2)
+    variances = np.maximum(np.linalg.eigvalsh(by_part @ by_part.transpose(0, 2, 1)), 0.0)
     shares = variances / np.maximum(variances.sum(axis=1, keepdims=True), 1e-12)
     entropy = -(shares * np.log(np.maximum(shares, 1e-12))).sum(axis=1)
-    duration = np.full(len(poses), np.log(parts.duration))
+    duration = np.full(len(by_part), np.log(parts.duration))
     return [likeness, np.log(SHORT + lag), entropy, duration]
 
 
 def _cycle(poses: FloatArray, rate: float) -> tuple[FloatArray, FloatArray]:
-    """(w,) the largest correlation (0..1) of centered `poses` (w, n, d) with themselves a cycle
+    """(w,) the largest correlation (0..1) of centered `poses` (d, w, n) with themselves a cycle
     later, and (w,) the time of that cycle, or of several, in seconds; 0 and 0 without one."""
-    parts, count = poses.shape[:2]
+    parts, count = poses.shape[1:]
     first, stop = int(CYCLE[0] * rate), min(int(CYCLE[1] * rate), count - count // MIN_OVERLAP)
     if stop <= first:
         return np.zeros(parts), np.zeros(parts)
-    spectrum = np.fft.rfft(poses, 2 * count, axis=1)
-    products = np.fft.irfft((spectrum * spectrum.conj()).real.sum(axis=2), 2 * count, axis=1)
-    energy = np.cumsum((poses**2).sum(axis=2), axis=1)
+    length = scipy.fft.next_fast_len(count + stop, real=True)  # no lag reaches around
+    spectrum = np.fft.rfft(poses, length, axis=2)
+    products = np.fft.irfft((spectrum.real**2 + spectrum.imag**2).sum(axis=0), length, axis=1)
+    energy = np.cumsum((poses**2).sum(axis=0), axis=1)
     lags = np.arange(first, stop)
     # the energies of the part before the last `lag` frames, and of the part after the first
     before, after = energy[:, count - 1 - lags], energy[:, -1:] - energy[:, lags - 1]
@@ -211,43 +210,26 @@ def _cycle(poses: FloatArray, rate: float) -> tuple[FloatArray, FloatArray]:
     )
 
 
-def _limbs(parts: _Parts, speeds: FloatArray) -> list[FloatArray]:
+def _limbs(
+    parts: Parts, means: Mapping[str, FloatArray], extremes: Mapping[str, FloatArray]
+) -> list[FloatArray]:
     """Speeds and heights of hands and feet, and how far the body leans and spreads."""
-    local = parts.local
-    hands = _of(speeds, _R.LEFT_HAND, _R.RIGHT_HAND)
-    feet = _of(speeds, _R.LEFT_FOOT, _R.RIGHT_FOOT)
-    heights = local[..., 1]
-    above_neck = _of(heights, _R.LEFT_HAND, _R.RIGHT_HAND) - _of(heights, _R.NECK)
-    foot = _of(heights, _R.LEFT_FOOT, _R.RIGHT_FOOT)
-    knee = _of(heights, _R.LEFT_KNEE, _R.RIGHT_KNEE)
-    neck = _of(local, _R.NECK)[:, :, 0]
-    peaks = [_log(np.quantile(pair.max(axis=2), HIGH, axis=1)) for pair in (hands, feet)]
-    sides = [np.subtract(*_log(pair.mean(axis=1)).T) for pair in (hands, feet)]
+    hands, feet = ([means[row] for row in _FASTER[pair]] for pair in ("fast_hand", "fast_foot"))
+    both_feet = np.concatenate([parts["left_foot"], parts["right_foot"]], axis=1)
     return [
-        _log(hands.mean(axis=(1, 2))),
-        _log(feet.mean(axis=(1, 2))),
-        *peaks,
-        *sides,
-        np.quantile(above_neck.max(axis=2), 0.95, axis=1),
-        above_neck.max(axis=2).mean(axis=1),
-        np.quantile(above_neck.min(axis=2), 0.95, axis=1),
-        np.quantile(foot.max(axis=2), HIGH, axis=1) - np.median(foot, axis=(1, 2)),
-        np.quantile(knee.max(axis=2), HIGH, axis=1),
-        np.quantile(np.hypot(neck[..., 0], neck[..., 2]), 0.95, axis=1),
-        neck[..., 2].mean(axis=1),
-        _apart(local, _R.LEFT_HAND, _R.RIGHT_HAND, 0.9),
-        _apart(local, _R.LEFT_FOOT, _R.RIGHT_FOOT, 0.95),
+        _log((hands[0] + hands[1]) / 2),
+        _log((feet[0] + feet[1]) / 2),
+        _log(extremes["hand_peak"]),
+        _log(extremes["foot_peak"]),
+        *(_log(left) - _log(right) for left, right in (hands, feet)),
+        extremes["hand_height"],
+        means["higher_hand"],
+        extremes["both_hands_height"],
+        extremes["foot_height"] - median(both_feet.T),
+        *(extremes[name] for name in ("knee_height", "lean")),
+        means["lean_forward"],
+        *(extremes[name] for name in ("hand_spread", "foot_spread")),
     ]
-
-
-def _apart(local: FloatArray, one: JointRole, other: JointRole, quantile: float) -> FloatArray:
-    line = _of(local, one)[:, :, 0] - _of(local, other)[:, :, 0]
-    return np.asarray(np.quantile(np.linalg.norm(line, axis=2), quantile, axis=1))
-
-
-def _of(values: FloatArray, *roles: JointRole) -> FloatArray:
-    """The columns of `values` (w, n, 13, ...) that belong to `roles`."""
-    return values[:, :, [SUN_ROLES.index(role) for role in roles]]
 
 
 def _log(value: FloatArray) -> FloatArray:

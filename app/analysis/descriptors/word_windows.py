@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.analysis.descriptors.movement_signs import SIGNS, signs_of_parts
+from app.analysis.descriptors.sign_series import SignSeries
 from app.analysis.symbols.channels import CHANNELS, statistics_of_parts
 from app.motion.frame.body_frame import BodyTrack
 from app.numerics.arrays import FloatArray, IntArray
@@ -28,17 +29,17 @@ PARTS_AT_ONCE = 128
 """Windows that are described at a time. It bounds the memory to 30 MB."""
 
 
-def word_window_arrays(track: BodyTrack, channels: FloatArray) -> dict[str, FloatArray]:
-    """The two arrays, for a track of n frames and its channels (n, 26).
+def word_window_arrays(series: SignSeries, channels: FloatArray) -> dict[str, FloatArray]:
+    """The two arrays, for the series of a track of n frames and its channels (n, 26).
 
     word_windows: (w, 175) float16. word_window_spans: (w, 2) float32, start and end in seconds.
     """
-    rate = track.rate
+    rate, count = series.rate, series.frames
     inputs, spans = [], []
     for seconds, hop in SECONDS:
-        frames = min(round(seconds * rate), track.frames)
-        firsts = first_frames(track.frames, frames, round(hop * rate))
-        inputs.append(word_inputs(track, channels, firsts, frames))
+        frames = min(round(seconds * rate), count)
+        firsts = first_frames(count, frames, round(hop * rate))
+        inputs.append(_inputs(series, channels, firsts, frames))
         spans.append(np.stack([firsts, firsts + frames], axis=1) / rate)
     return {
         WORD_WINDOWS: np.vstack(inputs).astype(np.float16),
@@ -61,9 +62,12 @@ def word_inputs(
     channels: (n, 26) of the track; firsts: (w,) the first frame of each part; frames: the length of
     each, at least 2.
     """
+    return _inputs(SignSeries(track), channels, firsts, frames)
+
+
+def _inputs(series: SignSeries, channels: FloatArray, firsts: IntArray, frames: int) -> FloatArray:
     found = [np.zeros((0, INPUT_WIDTH))]
     for some in np.split(firsts, range(PARTS_AT_ONCE, len(firsts), PARTS_AT_ONCE)):
-        at = some[:, None] + np.arange(frames)
-        statistics = statistics_of_parts(channels[at], track.rate)
-        found.append(np.hstack([statistics, signs_of_parts(track, some, frames)]))
+        statistics = statistics_of_parts(channels, series.rate, some, frames)
+        found.append(np.hstack([statistics, signs_of_parts(series, some, frames)]))
     return np.vstack(found)

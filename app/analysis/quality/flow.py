@@ -10,6 +10,7 @@ import scipy
 from app.motion.frame.body_frame import BodyTrack
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.euclidean import squared_distances
+from app.numerics.quantiles import median
 
 WINDOW = 1.0
 """Seconds of a window whose jerk is measured. In longer ones the jerk grows with the length."""
@@ -74,7 +75,7 @@ def jitter(track: BodyTrack) -> float | None:
     jerk = (sums[starts + width - 3] - sums[starts]) / (width - 3) * WINDOW
     peak = np.maximum(speeds[starts[:, None] + np.arange(width - 1)].max(axis=1), MIN_PEAK)
     logs = np.log(np.maximum(WINDOW**3 * jerk / peak**2, LEAST_JERK))
-    return float(np.median(logs.mean(axis=1)))
+    return float(median(logs.mean(axis=1)))
 
 
 def best_loop(track: BodyTrack) -> Loop | None:

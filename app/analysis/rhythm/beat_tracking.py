@@ -7,9 +7,10 @@ their onset strength, for motions their stops.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import scipy
-from numpy.lib.stride_tricks import sliding_window_view
 
 from app.numerics.arrays import FloatArray, IntArray
 
@@ -62,7 +63,7 @@ def likely_periods(
     best = grid[peaks[np.argsort(-salience[peaks], kind="stable")][:count]]
     found: list[float] = []
     for period in (float(p / ratio) for p in best for ratio in RATIOS):
-        new = all(abs(np.log(period / other)) > APART for other in found)
+        new = all(abs(math.log(period / other)) > APART for other in found)
         if new and shortest <= period <= longest:
             found.append(period)
     return found
@@ -89,10 +90,12 @@ def track(strength: FloatArray, period: float, tightness: float, reach: float = 
         return np.zeros(0, dtype=np.int64)
     # Row f of `behind` holds `total` of the frames f - furthest .. f - nearest.
     total = np.concatenate([np.full(furthest, -np.inf), strength])
-    behind = sliding_window_view(total, len(gaps))
+    # numpy's sliding_window_view takes longer than a step of the loop below.
+    behind = np.ndarray((len(total) - len(gaps) + 1, len(gaps)), buffer=total, strides=(8, 8))
     for first in range(nearest, count, nearest):
-        reached = np.add(behind[first : first + nearest][: count - first], cost).max(axis=1)
-        here = total[furthest + first : furthest + first + len(reached)]
+        stop = min(first + nearest, count)
+        reached = np.maximum.reduce(behind[first:stop] + cost, axis=1)
+        here = total[furthest + first : furthest + stop]
         np.add(here, np.maximum(reached, 0.0, out=reached), out=here)
     last = max(0, count - round(period))
     beats = [last + int(total[furthest + last :].argmax())]

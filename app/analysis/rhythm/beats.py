@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import lru_cache
 
 import numpy as np
 import scipy
@@ -211,7 +212,7 @@ def _log_energy(energy: FloatArray, rate: float) -> FloatArray:
     highest = float(energy.max(initial=0.0))
     if not highest > 0:
         return np.zeros(len(energy))
-    level = np.log(energy + max(ENERGY_FLOOR * float(np.median(energy)), 1e-6 * highest))
+    level = np.log(energy + max(ENERGY_FLOOR * float(median(energy)), 1e-6 * highest))
     return np.asarray(level - scipy.ndimage.gaussian_filter1d(level, TREND * rate, mode="reflect"))
 
 
@@ -258,9 +259,10 @@ def _track_tempo(stops: Stops, period: float) -> _TempoTrack | None:
         return None
     beat = float(median(steps))
     off = (stops.times[:, None] - beats) / beat
-    nearest = off[np.arange(len(off)), np.abs(off).argmin(axis=1)]
+    away = np.abs(off)
+    nearest = off[np.arange(len(off)), away.argmin(axis=1)]
     weights, total = stops.weights, float(stops.weights.sum())
-    with_stop = float((weights[:, None] * (np.abs(off) < MAX_STOP_OFFSET)).max(axis=0).mean())
+    with_stop = float((weights[:, None] * (away < MAX_STOP_OFFSET)).max(axis=0).mean())
     on_beat = float(weights[np.abs(nearest) < MAX_STOP_OFFSET].sum()) / total
     phase_length = float(np.abs((weights * np.exp(2j * np.pi * nearest)).sum())) / total
     octaves = np.log2(60.0 / beat / USUAL_TEMPO)
@@ -292,13 +294,19 @@ def _smoothed(beats: FloatArray, stops: Stops) -> FloatArray:
     degree = min(1 + len(beats) // BEATS_PER_BEND, MAX_BENDS)
     if int(near.sum()) < degree + 2:
         return beats
-    numbers = 2.0 * np.arange(len(beats)) / (len(beats) - 1) - 1.0
-    polynomials = legvander(numbers, degree)
+    polynomials = _polynomials(len(beats), degree)
     basis, weights = polynomials[nearest[near]], stops.weights[near]
     stiff = np.diag([0.0, 0.0, *[STIFFNESS] * (degree - 1)])
     left = (basis * weights[:, None]).T @ basis + stiff
     right = (basis * weights[:, None]).T @ stops.times[near]
     return np.asarray(polynomials @ np.linalg.solve(left, right))
+
+
+@lru_cache(maxsize=1024)
+def _polynomials(beats: int, degree: int) -> FloatArray:
+    """(beats, degree + 1) the Legendre polynomials at evenly spaced beats, -1..1."""
+    # Cached, because every tempo of every clip asks for them.
+    return np.asarray(legvander(2.0 * np.arange(beats) / (beats - 1) - 1.0, degree))
 
 
 def continued(beats: FloatArray, duration: float) -> FloatArray:

@@ -14,7 +14,8 @@ import numpy as np
 
 from app.motion.frame.body_frame import BodyTrack
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
-from app.numerics.arrays import FloatArray
+from app.numerics.arrays import FloatArray, IntArray
+from app.numerics.quantiles import quantile, quantiles_of_sorted
 
 _R = JointRole
 
@@ -89,19 +90,33 @@ def symbol_statistics(features: FloatArray, rate: float) -> FloatArray:
     length in seconds. On 496 held-out real clips, the quantiles add .013 to top-3 recognition,
     .008 to F and .010 to MAP (three foldings).
     """
-    return np.asarray(statistics_of_parts(features[None], rate)[0])
+    whole = np.zeros(1, dtype=np.int64)
+    return np.asarray(statistics_of_parts(features, rate, whole, len(features))[0])
 
 
-def statistics_of_parts(features: FloatArray, rate: float) -> FloatArray:
-    """(w, 131) the `symbol_statistics` of w parts of equal length, `features` (w, n, 26)."""
-    parts, frames, width = features.shape
-    change = np.zeros((parts, width))
-    if frames > 1:
-        change = np.abs(np.diff(features, axis=1)).mean(axis=1) * rate
-    low, high = np.quantile(features, EXTREMES, axis=1)
-    seconds = np.full((parts, 1), np.log(frames / rate))
-    found = [features.mean(axis=1), features.std(axis=1), change, low, high, seconds]
-    return np.hstack(found)
+def statistics_of_parts(
+    features: FloatArray, rate: float, firsts: IntArray, frames: int
+) -> FloatArray:
+    """(w, 131) the `symbol_statistics` of parts of `features` (N, 26), each of `frames` frames.
+
+    firsts: (w,) the first frame of each part.
+    """
+    rows = np.ascontiguousarray(features.T)
+    values = rows[:, firsts[:, None] + np.arange(frames)]  # (26, w, n)
+    # The mean of the changes inside of a part, from their running sum.
+    path = np.cumsum(np.abs(np.diff(rows, axis=1, prepend=rows[:, :1])), axis=1)
+    steps = path[:, firsts + frames - 1] - path[:, firsts]
+    ordered = np.sort(values, axis=2)
+    low, high = (quantiles_of_sorted(ordered, np.full(len(ordered), share)) for share in EXTREMES)
+    found = [
+        values.mean(axis=2),
+        values.std(axis=2),
+        steps * (rate / max(frames - 1, 1)),
+        low,
+        high,
+    ]
+    seconds = np.full((1, len(firsts)), np.log(frames / rate))
+    return np.asarray(np.vstack([*found, seconds]).T)
 
 
 def _limb_channels(local: FloatArray) -> FloatArray:
@@ -142,7 +157,7 @@ def _trunk_channels(track: BodyTrack) -> FloatArray:
 def _height(track: BodyTrack) -> FloatArray:
     """(n,) the height of the hips above the floor of the clip, body lengths."""
     lowest = track.positions[:, :, 1].min(axis=1)
-    floor = np.quantile(lowest, FLOOR_QUANTILE)
+    floor = quantile(lowest, FLOOR_QUANTILE)
     return np.asarray((track.origin[:, 1] - floor) / track.body_length)
 
 

@@ -59,7 +59,7 @@ def symbol_motion(symbol: GaussianHMM, track: BodyTrack) -> SymbolMotion:
     track: that of the clip to which the symbol was fitted. The result is deterministic. A symbol
     of one state holds one pose while it travels.
     """
-    from app.numerics.hmm.fit import occupancy  # hmmlearn is slow to load
+    from app.numerics.hmm.sampling import occupancy  # hmmlearn is slow to load
 
     weights = occupancy(symbol, symbol_features(track))
     poses = _means_by_state(track.local.reshape(track.frames, -1), weights)

@@ -22,7 +22,7 @@ def motion_symbol(features: FloatArray) -> GaussianHMM:
 
     The result is deterministic. Raises ValueError if a value is not finite.
     """
-    from app.numerics.hmm.fit import fit_left_to_right  # hmmlearn is slow to load
+    from app.numerics.hmm.fit import fit_left_to_right  # only processes that fit load hmmlearn
 
     floor = np.full(features.shape[1], VARIANCE_FLOOR)
     return fit_left_to_right(features, states=SYMBOL_STATES, variance_floor=floor)

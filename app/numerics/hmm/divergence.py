@@ -85,7 +85,7 @@ def monte_carlo_divergence(
     draws: the number of sequences, each of the source's expected length. The result is
     deterministic for a seed; by chance it can be negative.
     """
-    from app.numerics.hmm.fit import sample  # hmmlearn is slow to load
+    from app.numerics.hmm.sampling import sample  # hmmlearn is slow to load
 
     rng = np.random.RandomState(seed)
     frames = len(source.expected_path())

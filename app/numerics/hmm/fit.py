@@ -1,21 +1,20 @@
-"""Left-to-right models of one sequence, fitted by hmmlearn (Takano, section 2.1).
+"""Left-to-right models of one sequence, fitted with hmmlearn's compiled core (Takano, section 2.1).
 
-hmmlearn does the expectation-maximization (EM), the sampling and the state probabilities. The
-subclass below adds what a motion symbol needs: a start from equal parts, a prior on the
-allowed transitions, and a variance floor in every M-step (hmmlearn's `min_covar` acts only
-before the first one).
-
-hmmlearn takes .25 s and 35 MB to load. So import this module inside the function that needs it.
-Shapes: frames T, states K, channels D.
+hmmlearn's own classes do not fit here: they load scikit-learn and pandas, which takes a second of
+CPU and 35 MB in each process, their checks take longer than the fit of a clip, and their
+`min_covar` acts only before the first M-step. So this module has the loop of the
+expectation-maximization (EM): a start from equal parts, a prior on the allowed transitions, and a
+variance floor in every M-step. The steps over frames are hmmlearn's. A textbook's EM is its twin in
+the tests. Shapes: frames T, states K, channels D.
 """
 
 from __future__ import annotations
 
-import logging
-from typing import Any
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
-from hmmlearn import hmm
+from hmmlearn import _hmmc
 
 from app.numerics.arrays import FloatArray
 from app.numerics.hmm.model import GaussianHMM, log_emissions
@@ -37,9 +36,8 @@ FRAMES_PER_STATE = 3
 MAX_CHANNEL = 1e100
 """The largest magnitude of a channel. Squares of larger values would overflow."""
 
-# hmmlearn warns of short clips and of a likelihood that falls. Both are usual here: the prior
-# and the floor can lower the likelihood. Only real errors may reach the service's log.
-logging.getLogger("hmmlearn").setLevel(logging.ERROR)
+MIN_FRAMES = 1e-5
+"""A state that expects fewer frames has the variances of this many."""
 
 
 def fit_left_to_right(
@@ -73,72 +71,6 @@ def states_for(frames: int, states: int) -> int:
     return max(1, min(states, frames // FRAMES_PER_STATE))
 
 
-def sample(model: GaussianHMM, frames: int, rng: np.random.RandomState) -> FloatArray:
-    """(frames, D) one sequence drawn from the model.
-
-    rng: a RandomState, because hmmlearn takes no newer generator.
-    """
-    drawn, _ = _LeftToRight(model).sample(frames, random_state=rng)
-    return np.asarray(drawn, dtype=np.float64)
-
-
-def occupancy(model: GaussianHMM, sequence: FloatArray) -> FloatArray:
-    """(T, K) the probability of each state at each frame of `sequence` (T, D); rows sum to 1."""
-    center = sequence.mean(axis=0)
-    centered = GaussianHMM(model.transitions, model.means - center, model.variances)
-    # logarithms: under a model of other motion, plain probabilities underflow
-    learner = _LeftToRight(centered, implementation="log")
-    return np.asarray(learner.predict_proba(sequence - center), dtype=np.float64)
-
-
-class _LeftToRight(hmm.GaussianHMM):  # type: ignore[misc]  # hmmlearn has no types
-    """hmmlearn's model with diagonal covariances, which starts from `start`.
-
-    floor: (D,) or a scalar, the smallest variance. options: those of hmmlearn.
-    """
-
-    means_: FloatArray
-    _covars_: FloatArray
-
-    def __init__(self, start: GaussianHMM, floor: FloatArray | float = 0.0, **options: Any) -> None:
-        options = {"implementation": "scaling", **options}
-        super().__init__(
-            start.states,
-            covariance_type="diag",
-            covars_prior=0.0,
-            covars_weight=1.0,
-            transmat_prior=np.where(start.transitions > 0, TRANSITION_PRIOR, 1.0),
-            params="tmc",  # a model always begins in its first state
-            init_params="",
-            **options,
-        )
-        self.floor = floor
-        self.startprob_ = np.eye(start.states)[0]
-        self.transmat_ = start.transitions
-        self.means_ = start.means
-        self.covars_ = start.variances
-
-    def _compute_log_likelihood(self, X: FloatArray) -> FloatArray:
-        # hmmlearn's own makes an array (T, K, D): a gigabyte for half an hour of motion
-        return log_emissions(X, self.means_, self._covars_)
-
-    def _do_mstep(self, stats: dict[str, FloatArray]) -> None:
-        # Every state is visited, since none can be skipped: nothing is divided by zero.
-        super()._do_mstep(stats)
-        self._covars_ = np.maximum(self._covars_, self.floor)
-
-    def _generate_sample_from_state(
-        self, state: int, random_state: np.random.RandomState
-    ) -> FloatArray:
-        # hmmlearn's own decomposes a full covariance for each frame
-        spread = np.sqrt(self._covars_[state])
-        return np.asarray(random_state.normal(self.means_[state], spread))
-
-    def model(self) -> GaussianHMM:
-        """The fitted model."""
-        return GaussianHMM(self.transmat_, self.means_, self._covars_)
-
-
 def _improve(
     start: GaussianHMM, data: FloatArray, floor: FloatArray, iterations: int
 ) -> GaussianHMM:
@@ -146,17 +78,102 @@ def _improve(
 
     data: (T, D). floor: (D,) the smallest variances.
     """
-    limits = {"n_iter": iterations, "tol": MIN_GAIN * len(data)}
-    learner = _LeftToRight(start, floor, **limits)
     try:
         # Plain probabilities are fast. If a frame is far from every state, they become 0, or
         # the factors that scale them overflow.
-        with np.errstate(over="raise", invalid="raise"):
-            learner.fit(data)
+        with np.errstate(over="raise", invalid="raise", under="ignore"):
+            return _after_em(start, data, floor, iterations, _expected)
     except (ValueError, FloatingPointError):
-        learner = _LeftToRight(start, floor, implementation="log", **limits)
-        learner.fit(data)
-    return learner.model()
+        with np.errstate(under="ignore"):
+            return _after_em(start, data, floor, iterations, _expected_by_logarithms)
+
+
+@dataclass(frozen=True, slots=True)
+class _Expected:
+    """What an E-step finds. log_likelihood: nats. occupancy: (T, K) the probability of each state
+    in each frame. moves: (K, K) the expected number of transitions."""
+
+    log_likelihood: float
+    occupancy: FloatArray
+    moves: FloatArray
+
+
+def _after_em(
+    model: GaussianHMM,
+    data: FloatArray,
+    floor: FloatArray,
+    iterations: int,
+    expect: Callable[[GaussianHMM, FloatArray], _Expected],
+) -> GaussianHMM:
+    """`model` after EM. expect: the E-step, of a model and data."""
+    squares = data**2
+    before = -np.inf
+    for _ in range(iterations):
+        expected = expect(model, data)
+        model = _maximized(model, expected, data, squares, floor)
+        if expected.log_likelihood - before < MIN_GAIN * len(data):
+            break
+        before = expected.log_likelihood
+    return model
+
+
+def _maximized(
+    model: GaussianHMM,
+    expected: _Expected,
+    data: FloatArray,
+    squares: FloatArray,
+    floor: FloatArray,
+) -> GaussianHMM:
+    """The M-step (Huang, Acero, Hon 2001, "Spoken Language Processing", p. 443)."""
+    # Every state is visited, since none can be skipped: nothing is divided by zero.
+    frames = expected.occupancy.sum(axis=0)[:, None]
+    sums = expected.occupancy.T @ data
+    means = sums / frames
+    spread = expected.occupancy.T @ squares - 2 * means * sums + means**2 * frames
+    counts = np.where(model.transitions > 0, TRANSITION_PRIOR - 1 + expected.moves, 0.0)
+    return GaussianHMM(
+        transitions=counts / counts.sum(axis=1, keepdims=True),
+        means=means,
+        variances=np.maximum(spread / np.maximum(frames, MIN_FRAMES), floor),
+    )
+
+
+def _expected(model: GaussianHMM, data: FloatArray) -> _Expected:
+    """The E-step with plain probabilities.
+
+    Raises ValueError or FloatingPointError if they become 0 or overflow.
+    """
+    first, moves = _first(model), model.transitions
+    densities = np.exp(log_emissions(data, model.means, model.variances))
+    log_likelihood, ahead, factors = _hmmc.forward_scaling(first, moves, densities)
+    back = _hmmc.backward_scaling(first, moves, densities, factors)
+    found = np.zeros_like(moves)
+    if len(data) > 1:
+        found = _hmmc.compute_scaling_xi_sum(ahead, moves, back, densities)
+    occupancy = ahead * back
+    occupancy /= occupancy.sum(axis=1, keepdims=True)
+    return _Expected(log_likelihood, occupancy, found)
+
+
+def _expected_by_logarithms(model: GaussianHMM, data: FloatArray) -> _Expected:
+    """The E-step with logarithms of probabilities."""
+    first, moves = _first(model), model.transitions
+    densities = log_emissions(data, model.means, model.variances)
+    log_likelihood, ahead = _hmmc.forward_log(first, moves, densities)
+    back = _hmmc.backward_log(first, moves, densities)
+    found = np.zeros_like(moves)
+    if len(data) > 1:
+        found = np.exp(_hmmc.compute_log_xi_sum(ahead, moves, back, densities))
+    both = ahead + back
+    occupancy = np.exp(both - np.logaddexp.reduce(both, axis=1, keepdims=True))
+    return _Expected(log_likelihood, occupancy, found)
+
+
+def _first(model: GaussianHMM) -> FloatArray:
+    """(K,) the probabilities of the first state: a model begins in its first one."""
+    first = np.zeros(model.states)
+    first[0] = 1.0
+    return first
 
 
 def _equal_parts(data: FloatArray, states: int, floor: FloatArray) -> GaussianHMM:

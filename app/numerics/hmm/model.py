@@ -2,8 +2,9 @@
 
 A model begins in its first state. In each frame it stays or moves to the next state. It may end in
 any state: if it had to end in the last one, short samples would be impossible and divergences
-infinite. Everything is computed with logarithms of probabilities. hmmlearn fits and samples models
-(app.numerics.hmm.fit). This module defines a model and scores sequences with it.
+infinite. Everything is computed with logarithms of probabilities. This module
+defines a model and scores sequences with it; app.numerics.hmm.fit and app.numerics.hmm.sampling use
+hmmlearn.
 Shapes: frames T, states K, channels D, models M.
 """
 

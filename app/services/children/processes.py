@@ -29,7 +29,7 @@ LIBRARIES = [
     "app.analysis.analyze",
     "app.formats.read",
     "app.motion.canonical.canonical",
-    "hmmlearn.hmm",
+    "app.numerics.hmm.fit",
     # SciPy imports these parts on first use, and some take half a second.
     "scipy.fft",
     "scipy.interpolate",

@@ -10,6 +10,12 @@ from app.store.clips import repository as clips
 from app.store.database.engine import Tx
 from app.store.database.ids import utc_now
 from app.store.database.tables import keypose_annotations
+from app.store.database.text_list import as_list, is_one_of
+
+# Built once, because every analysis executes it.
+_SOME = select(keypose_annotations.c.clip_id, keypose_annotations.c.times).where(
+    is_one_of(keypose_annotations.c.clip_id, "ids")
+)
 
 Times = tuple[float, ...]
 """Seconds, in rising order."""
@@ -36,10 +42,8 @@ def get_many(tx: Tx, clip_ids: Collection[str]) -> dict[str, Times]:
     """The annotations by clip id, in the order of `clip_ids`; clips without one are left out."""
     times_of: dict[str, Times] = {}
     for batch in clips.in_batches(clip_ids):
-        query = select(keypose_annotations.c.clip_id, keypose_annotations.c.times).where(
-            keypose_annotations.c.clip_id.in_(batch)
-        )
-        times_of |= {clip_id: tuple(times) for clip_id, times in tx.execute(query)}
+        rows = tx.execute(_SOME, {"ids": as_list(batch)})
+        times_of |= {clip_id: tuple(times) for clip_id, times in rows}
     return {clip_id: times_of[clip_id] for clip_id in clip_ids if clip_id in times_of}
 
 

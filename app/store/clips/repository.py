@@ -26,9 +26,11 @@ from app.store.clips.record import (
     Reanalysis,
 )
 from app.store.clips.rows import (
+    INPUT_COLUMNS,
     changed_input,
     changed_metadata,
     client_fields,
+    input_of,
     origin_columns,
     searched_text,
     to_columns,
@@ -47,11 +49,17 @@ IDS_PER_QUERY = 500
 # Built once, because to build a statement takes longer than to execute it.
 _SOME = select(clips).where(is_one_of(clips.c.id, "ids"))
 _STATE = select(clips.c.state).where(clips.c.id == bindparam("the_id"))
+_INPUT = select(*(clips.c[name] for name in INPUT_COLUMNS)).where(clips.c.id == bindparam("the_id"))
 _VERSION = select(clips.c.changed_version).where(
     clips.c.id == bindparam("the_id"), clips.c.state == ClipState.READY.value
 )
 _WITH_CONTENT = select(clips.c.id).where(clips.c.content_key == bindparam("content"))
 _CHANGE = update(clips).where(clips.c.id == bindparam("the_id"))
+_BEGIN = (
+    update(clips)
+    .where(clips.c.id == bindparam("the_id"), clips.c.state == ClipState.QUEUED.value)
+    .values(state=ClipState.PROCESSING.value)
+)
 _ADD, _ADD_WORDS = insert(clips), insert(clip_words)
 _WORDS = (
     select(clip_words.c.clip_id, clip_words.c.word)
@@ -169,8 +177,7 @@ def wait_again(tx: Tx, clip_id: str) -> None:
 def set_processing(tx: Tx, clip_id: str) -> None:
     """A worker has begun the analysis of the clip. Raises ClipNotFound."""
     # Most clips are queued: then one statement is enough.
-    begun = update(clips).where(clips.c.id == clip_id, clips.c.state == ClipState.QUEUED.value)
-    if tx.execute(begun.values(state=ClipState.PROCESSING.value)).rowcount:
+    if tx.execute(_BEGIN, {"the_id": clip_id}).rowcount:
         return
     if _state_of(tx, clip_id) is ClipState.READY:
         _set(tx, clip_id, reanalysis=Reanalysis.PROCESSING.value)
@@ -181,7 +188,14 @@ def set_processing(tx: Tx, clip_id: str) -> None:
 def set_ready(tx: Tx, clip_id: str, facts: ClipFacts) -> None:
     """The clip is analyzed; searches find it after the commit of this transaction."""
     done: dict[str, Any] = {"error": None, "reanalysis": None, "is_changed": False}
-    _enter(tx, clip_id, ClipState.READY, **done, **asdict(facts))
+    _set(
+        tx,
+        clip_id,
+        state=ClipState.READY.value,
+        changed_version=library.bump(tx),
+        **done,
+        **asdict(facts),
+    )
 
 
 def set_failed(tx: Tx, clip_id: str, problem: dict[str, Any]) -> None:
@@ -278,7 +292,10 @@ def _add_words(tx: Tx, clip_id: str, words: Sequence[str]) -> None:
 
 def analysis_input(tx: Tx, clip_id: str) -> AnalysisInput:
     """The current `ClipRecord.analysis_input` of a clip. Raises ClipNotFound."""
-    return get(tx, clip_id).analysis_input
+    row = tx.execute(visibility.of_visible(_INPUT), {"the_id": clip_id}).mappings().one_or_none()
+    if row is None:
+        raise _not_found(clip_id)
+    return input_of(row)
 
 
 def _enter(tx: Tx, clip_id: str, state: ClipState, **values: Any) -> None:
@@ -290,8 +307,9 @@ def _enter(tx: Tx, clip_id: str, state: ClipState, **values: Any) -> None:
 
 
 def _set(tx: Tx, clip_id: str, **values: Any) -> None:
-    """Change columns that no search reads."""
-    tx.execute(_CHANGE, {"the_id": clip_id, **values})
+    """Change columns. Raises ClipNotFound."""
+    if not tx.execute(_CHANGE, {"the_id": clip_id, **values}).rowcount:
+        raise _not_found(clip_id)
 
 
 def _state_of(tx: Tx, clip_id: str) -> ClipState:

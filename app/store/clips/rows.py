@@ -92,6 +92,15 @@ def to_columns(changes: ClipChanges) -> dict[str, Any]:
     return columns
 
 
+INPUT_COLUMNS = (*_HINT_COLUMNS.values(), _AUDIO_COLUMNS["sha256"])
+"""The columns that `input_of` reads."""
+
+
+def input_of(row: RowMapping) -> AnalysisInput:
+    """The input of an analysis of a clip, from its INPUT_COLUMNS."""
+    return _hints(row), row[_AUDIO_COLUMNS["sha256"]]
+
+
 def changed_input(before: ClipRecord, changes: ClipChanges) -> AnalysisInput:
     """The input of an analysis of the clip after the changes."""
     hints = {name: value for name, value in changes.items() if name in _HINT_COLUMNS}

@@ -68,5 +68,5 @@ def test_a_cycle_is_that_of_the_slow_obvious_way() -> None:
             likeness = one @ other / np.sqrt((one @ one) * (other @ other))
             if likeness > best:
                 best, lag = likeness, shift
-        found = np.ravel(_cycle(poses[None], 30.0))
+        found = np.ravel(_cycle(poses.T[:, None], 30.0))
         np.testing.assert_allclose(found, (best, lag / 30.0), atol=1e-9)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from app.analysis.descriptors.movement_signs import movement_signs
+from app.analysis.descriptors.sign_series import SignSeries
 from app.analysis.descriptors.word_windows import (
     INPUT_WIDTH,
     WORD_WINDOW_SPANS,
@@ -39,7 +40,7 @@ def test_windows_are_those_of_a_slow_twin() -> None:
 @pytest.mark.parametrize("seconds", [0.2, 1.0, 2.0, 3.9, 9.3])
 def test_windows_cover_the_motion(seconds: float) -> None:
     track = smooth_track(motion_of(walking(seconds)))
-    arrays = word_window_arrays(track, symbol_features(track))
+    arrays = word_window_arrays(SignSeries(track), symbol_features(track))
     spans = arrays[WORD_WINDOW_SPANS]
     assert arrays[WORD_WINDOWS].shape == (len(spans), INPUT_WIDTH)
     assert np.isfinite(arrays[WORD_WINDOWS].astype(np.float32)).all()

@@ -10,10 +10,12 @@ from hypothesis import strategies as st
 from app.formats.common.decimals import plain_table
 
 PLAIN = st.from_regex(r"-?([0-9]{1,7}(\.[0-9]{0,6})?|\.[0-9]{1,7})", fullmatch=True)
-WORDS = st.text(alphabet="0123456789.-", min_size=1, max_size=6)
+SMALL = st.from_regex(r"-?[0-9]{1,7}(\.[0-9]{0,6})?[eE]-(0[0-9]|1[0-6])", fullmatch=True)
+LARGE = st.from_regex(r"-?[0-9]{1,5}\.[0-9]{6,8}[eE]\+0[0-6]", fullmatch=True)
+WORDS = st.text(alphabet="0123456789.-e+", min_size=1, max_size=7)
 
 
-@given(st.lists(st.tuples(PLAIN, PLAIN, PLAIN), min_size=1, max_size=6))
+@given(st.lists(st.tuples(PLAIN, PLAIN | SMALL, PLAIN | LARGE), min_size=1, max_size=6))
 def test_each_number_is_read_as_python_reads_it(rows: list[tuple[str, str, str]]) -> None:
     lines = ["\t ".join(row).encode() for row in rows]
     table = plain_table(lines, 3)
@@ -31,7 +33,8 @@ def test_text_that_is_not_a_number_is_never_read_as_a_number(rows: list[tuple[st
 
 
 NOT_PLAIN = """
-1 2e3; 1 nan; 1 +2; 1,5 2; 1_0 2; 1 2 3; 1; 1-2 .; .-5 1; 1 -; - 1 -1; 1.2.3 1; 1 --5; 1 -.
+1 2e3; 1 2e+03 4; 1 1e-0x; 1 1e-1; e-05 1; 1 1e-023; 1 1.5e-23; 1 1.5e+02
+1 nan; 1 +2; 1,5 2; 1_0 2; 1 2 3; 1; 1-2 .; .-5 1; 1 -; - 1 -1; 1.2.3 1; 1 --5; 1 -.
 1 1234567890123456; \u0661 1
 """
 

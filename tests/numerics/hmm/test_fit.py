@@ -1,4 +1,4 @@
-"""Models that hmmlearn fits: as the textbook has them, for any sequence, and quietly."""
+"""Fitted models: as the textbook has them, for any sequence, and quietly."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.numerics.hmm.fit import fit_left_to_right, occupancy, sample
+from app.numerics.hmm.fit import fit_left_to_right
 from app.numerics.hmm.model import GaussianHMM, log_likelihood
+from app.numerics.hmm.sampling import occupancy, sample
 from tests.numerics.hmm_reference import naive_occupancy, textbook_em, wavy
 
 FLOOR = np.full(6, 0.1)
