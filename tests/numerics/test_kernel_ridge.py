@@ -2,10 +2,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import scipy
 
 from app.numerics import kernel_ridge
 from app.numerics.kernel_ridge import (
     PENALTIES,
+    WIDTHS,
     fit_kernel_ridge,
     gaussian_kernel,
     leave_one_out_errors,
@@ -32,6 +34,26 @@ def test_the_closed_form_equals_leaving_each_row_out(data) -> None:  # type: ign
                 outputs[out] - kernel[out, kept] @ np.linalg.solve(inner, outputs[kept])
             )
         assert error == pytest.approx((np.array(residuals) ** 2).mean())
+
+
+def test_the_chosen_width_and_penalty_are_the_best_of_all(data) -> None:  # type: ignore[no-untyped-def]
+    rows, outputs = data
+    model = fit_kernel_ridge(rows, outputs)
+    unit = np.median(scipy.spatial.distance.pdist(rows))
+    errors = {
+        (share * unit, penalty): error
+        for share in WIDTHS
+        for penalty, error in zip(
+            PENALTIES,
+            leave_one_out_errors(
+                gaussian_kernel(rows, rows, share * unit), outputs - outputs.mean(axis=0)
+            ),
+            strict=True,
+        )
+    }
+    width, penalty = min(errors, key=lambda pair: errors[pair])
+    assert model.width == pytest.approx(width)
+    assert model.penalty == penalty
 
 
 def test_held_out_rows_are_predicted(data) -> None:  # type: ignore[no-untyped-def]
