@@ -61,12 +61,44 @@ def find_cells(persons: Sequence[str | None], tasks: Sequence[str | None]) -> Ce
     return Cells(person_names, task_names, member, unique[:, 0], unique[:, 1], takes)
 
 
+def even_cells(persons: Sequence[str | None], tasks: Sequence[str | None], most: int) -> list[int]:
+    """Ascending indices of the clips with both labels, or `even_takes` of their cells, if there are
+    more than `most`; persons, tasks: (clips,)."""
+    both = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if all(labels)]
+    if len(both) <= most:
+        return both
+    cells = find_cells([persons[i] for i in both], [tasks[i] for i in both])
+    return [both[i] for i in even_takes(cells, most)]
+
+
 def cell_means(points: FloatArray, cells: Cells) -> FloatArray:
     """(cells, d) means of `points` (clips, d)."""
-    labeled = cells.member >= 0
-    means = np.zeros((len(cells), points.shape[1]))
-    np.add.at(means, cells.member[labeled], points[labeled])
-    return np.asarray(means / np.maximum(cells.takes, 1)[:, None])
+    if not len(cells):
+        return np.zeros((0, points.shape[1]))
+    # every cell has a take, so none of the sums is empty
+    order = np.argsort(cells.member, kind="stable")[np.count_nonzero(cells.member < 0) :]
+    starts = np.cumsum(cells.takes) - cells.takes
+    sums = np.add.reduceat(np.asarray(points, dtype=np.float64)[order], starts, axis=0)
+    return np.asarray(sums / cells.takes[:, None])
+
+
+def even_takes(cells: Cells, most: int) -> IntArray:
+    """Ascending indices of at most `most` labeled clips, but of at least one take of each cell.
+
+    A cell with more takes than fit gives some of them, evenly spread in the order of the clips:
+    after the first dozens, a further take of a cell hardly changes its mean.
+    """
+    order = np.argsort(cells.member, kind="stable")[np.count_nonzero(cells.member < 0) :]
+    if len(order) <= most:
+        return np.sort(order)
+    each = 1
+    while np.minimum(cells.takes, each + 1).sum() <= most:
+        each += 1
+    chosen = [
+        members[np.linspace(0, len(members) - 1, min(len(members), each)).astype(np.int64)]
+        for members in np.split(order, np.cumsum(cells.takes)[:-1])
+    ]
+    return np.sort(np.concatenate(chosen))
 
 
 @dataclass(frozen=True, slots=True)

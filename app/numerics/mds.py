@@ -11,10 +11,12 @@ scikit-learn minimizes only the raw stress (app.numerics.smacof). That leaves a 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import scipy
 
-from app.numerics.arrays import FloatArray
+from app.numerics.arrays import BoolArray, FloatArray
 from app.numerics.euclidean import squared_distances
 from app.numerics.signs import fix_signs
 
@@ -22,13 +24,17 @@ REFINING_STEPS = 200
 """The largest number of L-BFGS iterations. On real libraries the error settles long before."""
 
 PLACING_STEPS = 20
-"""The number of Levenberg-Marquardt steps for a new point."""
+"""The largest number of steps for a new point."""
+
+PLACED = 1e-9
+"""A point rests when its step is shorter than this share of the landmarks' spread."""
 
 MIN_SHARE = 1e-3
 """The smallest distance, as a share of the mean distance. Eq. 3 divides by distances."""
 
-_BLOCK = 2000
-"""The number of points that are placed at once. It bounds the memory to _BLOCK * L * d floats."""
+_BLOCK = 1000
+"""The number of points that are placed at once. It bounds the memory to _BLOCK * d^2 floats, some
+times over."""
 
 
 def classical_mds(distances: FloatArray, dimensions: int) -> FloatArray:
@@ -76,7 +82,9 @@ def place(distances: FloatArray, landmarks: FloatArray) -> FloatArray:
     """(N, d) coordinates of new points, from their `distances` (N, L) to `landmarks` (L, d).
 
     Each point is placed alone; N may be 0. The start is the triangulation of landmark MDS (de
-    Silva and Tenenbaum 2004). Levenberg-Marquardt steps then lower the error of eq. 3.
+    Silva and Tenenbaum 2004). Levenberg-Marquardt steps then lower the error of eq. 3. All
+    sums over landmarks are matrix products of the distances with powers of the landmarks, so no
+    derivative is stored for each pair.
     """
     blocks = [
         _place_block(distances[first : first + _BLOCK], landmarks)
@@ -103,17 +111,30 @@ def _stress_and_slope(points: FloatArray, squares: FloatArray) -> tuple[float, F
 def _place_block(distances: FloatArray, landmarks: FloatArray) -> FloatArray:
     """(N, d) as `place`, for some of the points."""
     targets = _floored(distances)
-    points = _triangulate(targets, landmarks)
+    center = landmarks.mean(axis=0)
+    spread = landmarks - center
+    unit = max(float((spread**2).sum(axis=1).mean()), 1e-300)
+    fall = _Falls.towards(targets, spread)
+    points = _triangulate(targets, landmarks) - center
     damping = np.full(len(points), 1e-2)
-    residuals, slopes = _misfit(points, targets, landmarks)
+    errors, slopes = fall.at(points)
+    active = np.arange(len(points))
     for _ in range(PLACING_STEPS):
-        moved = points + _damped_step(residuals, slopes, damping)
-        new_residuals, new_slopes = _misfit(moved, targets, landmarks)
-        is_better = (new_residuals**2).sum(axis=1) < (residuals**2).sum(axis=1)
-        points[is_better] = moved[is_better]
-        residuals[is_better], slopes[is_better] = new_residuals[is_better], new_slopes[is_better]
-        damping *= np.where(is_better, 0.3, 5.0)  # a worse step is dropped, and the next is shorter
-    return points
+        step = fall.step(points[active], slopes, damping[active])
+        moved = points[active] + step
+        new_errors, new_slopes = fall.at(moved)
+        is_better = new_errors < errors
+        points[active[is_better]] = moved[is_better]
+        errors = np.where(is_better, new_errors, errors)
+        slopes = np.where(is_better[:, None], new_slopes, slopes)
+        # a worse step is dropped, and the next is shorter
+        damping[active] *= np.where(is_better, 0.3, 5.0)
+        goes_on = (step**2).sum(axis=1) > PLACED**2 * unit
+        if not goes_on.any():
+            break
+        fall, active = fall.of(goes_on), active[goes_on]
+        errors, slopes = errors[goes_on], slopes[goes_on]
+    return np.asarray(points + center)
 
 
 def _triangulate(targets: FloatArray, landmarks: FloatArray) -> FloatArray:
@@ -126,22 +147,53 @@ def _triangulate(targets: FloatArray, landmarks: FloatArray) -> FloatArray:
     return np.asarray(0.5 * products @ np.linalg.pinv(spread, rcond=1e-6).T + center)
 
 
-def _misfit(
-    points: FloatArray, targets: FloatArray, landmarks: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """The residuals (N, L) and their derivatives (N, L, d) by the coordinates of `points`.
+@dataclass(frozen=True, slots=True)
+class _Falls:
+    """The error of eq. 3 of N points with targets to L landmarks, and its derivatives.
 
-    targets: (N, L) the given distances. The squared residuals sum to the error of eq. 3.
+    landmarks: (L, d), centered; weights: (N, L) 1 / target^2; products: (N, d, d) the sum over
+    landmarks l of weight * l l'; sums: (N, d) of weight * l; totals: (N,) of the weights.
     """
-    offsets = points[:, None] - landmarks
-    residuals = (targets**2 - (offsets**2).sum(axis=2)) / (2.0 * targets)
-    return residuals, -offsets / targets[:, :, None]
 
+    landmarks: FloatArray
+    targets: FloatArray
+    weights: FloatArray
+    products: FloatArray
+    sums: FloatArray
+    totals: FloatArray
 
-def _damped_step(residuals: FloatArray, slopes: FloatArray, damping: FloatArray) -> FloatArray:
-    """(N, d) the Levenberg-Marquardt step of each point; damping: (N,)."""
-    normal = slopes.transpose(0, 2, 1) @ slopes  # (N, d, d)
-    scale = np.trace(normal, axis1=1, axis2=2) / normal.shape[1] + 1e-12
-    normal += (damping * scale)[:, None, None] * np.eye(normal.shape[1])
-    slope = slopes.transpose(0, 2, 1) @ residuals[:, :, None]
-    return np.asarray(-np.linalg.solve(normal, slope)[:, :, 0])
+    @classmethod
+    def towards(cls, targets: FloatArray, landmarks: FloatArray) -> _Falls:
+        """targets: (N, L); landmarks: (L, d)."""
+        weights = 1.0 / targets**2
+        count, width = landmarks.shape
+        outer = (landmarks[:, :, None] * landmarks[:, None]).reshape(count, -1)
+        products = (weights @ outer).reshape(len(weights), width, width)
+        sums, totals = weights @ landmarks, weights.sum(axis=1)
+        return cls(landmarks, targets, weights, products, sums, totals)
+
+    def of(self, rows: BoolArray) -> _Falls:
+        """The same of some of the points; rows: (N,)."""
+        parts = (self.targets, self.weights, self.products, self.sums, self.totals)
+        return _Falls(self.landmarks, *(part[rows] for part in parts))
+
+    def at(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """(N,) errors of `points` (N, d), and half of their gradient (N, d)."""
+        squares = squared_distances(points, self.landmarks)
+        # residual / target: how strongly each landmark pulls
+        pulls = 0.5 - 0.5 * squares * self.weights
+        slopes = pulls @ self.landmarks - pulls.sum(axis=1)[:, None] * points
+        return ((pulls * self.targets) ** 2).sum(axis=1), slopes
+
+    def step(self, points: FloatArray, slopes: FloatArray, damping: FloatArray) -> FloatArray:
+        """(N, d) the Levenberg-Marquardt step of each point; damping: (N,).
+
+        The matrix is J'J of the residuals, whose derivative by x is -(x - l) / target.
+        """
+        cross = points[:, :, None] * self.sums[:, None]
+        normal = self.products - cross - cross.swapaxes(1, 2)
+        normal += (self.totals[:, None] * points)[:, :, None] * points[:, None]
+        width = points.shape[1]
+        scale = np.trace(normal, axis1=1, axis2=2) / width + 1e-12
+        normal += (damping * scale)[:, None, None] * np.eye(width)
+        return np.asarray(-np.linalg.solve(normal, slopes[:, :, None])[:, :, 0])

@@ -15,6 +15,9 @@ import scipy
 from app.numerics.arrays import FloatArray
 from app.numerics.signs import fix_signs
 
+_AT_ONCE = 4096
+"""Samples that are projected at once. It bounds the memory."""
+
 _RELATIVE_FLOOR = 1e-10
 """Axes with a smaller share of the largest variance hold only rounding errors."""
 
@@ -32,7 +35,14 @@ class PrincipalAxes:
 
     def project(self, samples: FloatArray) -> FloatArray:
         """(n, k) the coordinates of `samples` (n, d) along the axes, float64."""
-        return np.asarray((np.asarray(samples, dtype=np.float64) - self.center) @ self.axes)
+        rows = np.asarray(samples)
+        if rows.ndim == 1:
+            return np.asarray((rows.astype(np.float64) - self.center) @ self.axes)
+        points = np.empty((len(rows), self.axes.shape[1]))
+        for first in range(0, len(rows), _AT_ONCE):
+            some = rows[first : first + _AT_ONCE].astype(np.float64)
+            points[first : first + _AT_ONCE] = (some - self.center) @ self.axes
+        return points
 
 
 def principal_axes(samples: FloatArray, count: int, *, centered: bool = True) -> PrincipalAxes:

@@ -1,4 +1,4 @@
-"""CPU seconds of the fit of each model, on the real clips and on a library of 10,000 clips.
+"""CPU seconds and memory of the fit of each model, on the real clips and on 10,000 clips.
 
 Run: OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 pytest -m bench -s tests/bench/test_fit_speed.py
 The large library is disturbed copies of the real clips. The time of a matrix product is printed
@@ -7,6 +7,7 @@ too: on a loaded machine, both grow alike.
 
 from __future__ import annotations
 
+import resource
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -40,12 +41,15 @@ PRODUCT = 1000
 
 
 def test_fits(tmp_path: Path) -> None:
-    FIGURES.print(f"\n{'CPU seconds':16}", end="")
+    FIGURES.print(f"\n{'CPU seconds':16}, and the peak memory of the process so far", end="")
     large: dict[str, float] = {}
     for count in (500, LARGE):
         large = _fits(_store(tmp_path / str(count), count))
         shown = ", ".join(f"{name} {seconds:.1f}" for name, seconds in large.items())
-        FIGURES.print(f"\n{count:6} clips: {sum(large.values()):.1f} ({shown})", end="")
+        memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+        FIGURES.print(
+            f"\n{count:6} clips: {sum(large.values()):.1f} ({shown}); {memory:.0f} MB", end=""
+        )
     matrix = np.ones((PRODUCT, PRODUCT))
     FIGURES.print(
         f"\nproduct of two matrices of {PRODUCT}: {_seconds(lambda: matrix @ matrix):.2f}"

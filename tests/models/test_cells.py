@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.models.cells import cell_means, find_cells, fit_effects
+from app.models.cells import cell_means, even_cells, even_takes, find_cells, fit_effects
 from tests.models.factor_clips import factor_clips
 
 
@@ -26,6 +26,32 @@ def test_no_labels_at_all_are_no_cells() -> None:
     cells = find_cells([None], [None])
     assert len(cells) == 0
     assert cell_means(np.ones((1, 3)), cells).shape == (0, 3)
+
+
+def test_means_are_those_of_each_cell_alone() -> None:
+    clips = factor_clips()
+    tasks = [None if row == 1 else task for row, task in enumerate(clips.tasks)]
+    cells = find_cells(clips.persons, tasks)
+    means = cell_means(clips.samples, cells)
+    for cell in range(len(cells)):
+        own = clips.samples[cells.member == cell].mean(axis=0)
+        np.testing.assert_allclose(means[cell], own)
+
+
+def test_a_large_cell_gives_some_takes_and_a_small_one_all() -> None:
+    cells = find_cells(["a"] * 100 + ["b"] * 3, ["run"] * 103)
+    chosen = even_takes(cells, 13)
+    assert len(chosen) == 13
+    assert set(chosen[-3:]) == {100, 101, 102}
+    assert chosen[0] == 0  # and the others are spread over all takes of the large cell
+    assert chosen[9] == 99
+
+
+def test_each_cell_keeps_a_take_and_a_small_library_all() -> None:
+    persons: list[str | None] = ["a", "a", "b", None, "c", "c"]
+    tasks = ["run"] * 6
+    assert even_cells(persons, tasks, 1) == [0, 2, 4]
+    assert even_cells(persons, tasks, 5) == [0, 1, 2, 4, 5]
 
 
 def test_a_missing_cell_is_predicted_by_the_sum_of_effects() -> None:

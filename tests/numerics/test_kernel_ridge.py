@@ -2,13 +2,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import scipy
 
 from app.numerics import kernel_ridge
 from app.numerics.kernel_ridge import (
     PENALTIES,
+    WIDTHS,
     fit_kernel_ridge,
     gaussian_kernel,
-    leave_one_out_errors,
+    leave_one_out_error,
 )
 
 
@@ -23,7 +25,7 @@ def data() -> tuple[np.ndarray, np.ndarray]:
 def test_the_closed_form_equals_leaving_each_row_out(data) -> None:  # type: ignore[no-untyped-def]
     rows, outputs = data[0][:25], data[1][:25]
     kernel = gaussian_kernel(rows, rows, 1.0)
-    for penalty, error in zip(PENALTIES, leave_one_out_errors(kernel, outputs), strict=True):
+    for penalty in PENALTIES:
         residuals = []
         for out in range(25):
             kept = np.delete(np.arange(25), out)
@@ -31,7 +33,25 @@ def test_the_closed_form_equals_leaving_each_row_out(data) -> None:  # type: ign
             residuals.append(
                 outputs[out] - kernel[out, kept] @ np.linalg.solve(inner, outputs[kept])
             )
+        error = leave_one_out_error(kernel, outputs, penalty)
         assert error == pytest.approx((np.array(residuals) ** 2).mean())
+
+
+def test_the_chosen_width_and_penalty_are_the_best_of_all(data) -> None:  # type: ignore[no-untyped-def]
+    rows, outputs = data
+    model = fit_kernel_ridge(rows, outputs)
+    unit = np.median(scipy.spatial.distance.pdist(rows))
+    centered = outputs - outputs.mean(axis=0)
+    errors = {
+        (share * unit, penalty): leave_one_out_error(
+            gaussian_kernel(rows, rows, share * unit), centered, penalty
+        )
+        for share in WIDTHS
+        for penalty in PENALTIES
+    }
+    width, penalty = min(errors, key=lambda pair: errors[pair])
+    assert model.width == pytest.approx(width)
+    assert model.penalty == penalty
 
 
 def test_held_out_rows_are_predicted(data) -> None:  # type: ignore[no-untyped-def]

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import scipy
 from scipy.spatial.distance import cdist
 
 from app.numerics.mds import classical_mds, metric_mds, place, stress
@@ -76,3 +77,18 @@ def test_duplicates_keep_together(points: np.ndarray) -> None:
     doubled = np.vstack([points, points[:1]])
     found = metric_mds(cdist(doubled, doubled), 4)
     np.testing.assert_allclose(found[0], found[-1], atol=1e-3)
+
+
+def test_placing_lowers_the_error_as_step_by_step_derivatives_do() -> None:
+    rng = np.random.default_rng(3)
+    landmarks, points = rng.normal(size=(12, 3)), rng.normal(size=(7, 3))
+    exact = np.linalg.norm(points[:, None] - landmarks, axis=2)
+    distances = exact * rng.uniform(0.8, 1.2, size=exact.shape)
+    placed = place(distances, landmarks)
+    for point, own in zip(placed, distances, strict=True):
+
+        def residuals(x: np.ndarray, own: np.ndarray = own) -> np.ndarray:
+            return np.asarray((own**2 - ((x - landmarks) ** 2).sum(axis=1)) / (2.0 * own))
+
+        slow = scipy.optimize.least_squares(residuals, point + 0.01, xtol=1e-12, ftol=1e-12)
+        np.testing.assert_allclose(point, slow.x, atol=1e-4)

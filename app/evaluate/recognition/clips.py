@@ -109,14 +109,14 @@ def judged_clips(training: TrainingSet, grouping: Grouping | None = None) -> Jud
     present = [one for one in angles if one is not None]
     copies = training.disturbed_copies()
     return JudgedClips(
-        samples=training.samples[use] if use else np.zeros((0, 0)),
+        samples=training.samples[use].astype(np.float64) if use else np.zeros((0, 0)),
         persons=[persons[i] for i in use],
         tasks=[tasks[i] for i in use],
         groups=[training.groups[i] for i in use],
         sources=[training.clips[i].source for i in use],
         unlabeled=len(training) - len(use),
         angles=np.stack(present) if present and len(present) == len(use) else None,
-        wide=training.wide[use] if use else None,
+        wide=training.wide[use].astype(np.float64) if use else None,
         copies=[copies[i] for i in use],
         reported=None if grouping is None else grouping.groups([training.clips[i] for i in use]),
     )

@@ -22,8 +22,9 @@ from app.models.holding_out import HeldOut, rounds
 from app.models.metric.learned_metric import ClipDescriptors, Factor, check_labels, fit_axes
 from app.models.metric.pair_calibration import PairCalibration, calibrate_pairs
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
+from app.numerics.euclidean import distances
 
-MAX_CLIPS = 2000
+MAX_CLIPS = 1000
 """Of larger libraries, a random subset of this many labeled clips is judged."""
 
 NEAREST = 20
@@ -89,25 +90,23 @@ def held_out_metric(
     for kind, training, probes in rounds(part.persons, part.tasks, part.groups):
         _judge_round(part, factor, training, probes, judged[kind])
     clips = judged[HeldOut.CLIPS]
-    distances, same = _pairs(clips)
-    calibration = calibrate_pairs(distances, same)
+    of_pairs, same = _pairs(clips)
+    calibration = calibrate_pairs(of_pairs, same)
     figures = {f"{kind}_held_out": _figures(results) for kind, results in judged.items()}
     document = {name: shares for name, shares in figures.items() if shares}
-    error = {"calibration_error": calibration_error(calibration, distances, same)}
+    error = {"calibration_error": calibration_error(calibration, of_pairs, same)}
     counted = {"labels": _label_counts(counts, by_name=factor is Factor.TASK)}
     return MetricEvaluation(document | error | counted, calibration)
 
 
-def calibration_error(
-    calibration: PairCalibration, distances: FloatArray, same: BoolArray
-) -> float:
+def calibration_error(calibration: PairCalibration, of_pairs: FloatArray, same: BoolArray) -> float:
     """Mean difference, over pairs (n,), between the score and the share with the same label.
 
-    The pairs are grouped into BINS bins by their score.
+    of_pairs: (n,) their distances. The pairs are grouped into BINS bins by their score.
     """
-    if not len(distances):
+    if not len(of_pairs):
         return 0.0
-    scores = calibration.probabilities(distances)
+    scores = calibration.probabilities(of_pairs)
     bins = np.minimum((scores * BINS).astype(np.int64), BINS - 1)
     sizes = np.bincount(bins, minlength=BINS)
     # (BINS,) sum of scores minus number of pairs with the same label
@@ -143,28 +142,28 @@ def _judge_round(
         return  # too few labels are left without the probes: this round has no figures
     points = axes.project(part.described)
     names, group = np.array(part.labels), np.array(part.groups)
-    for probe in probes.tolist():
+    vectors = part.described.vectors
+    to_all, plain_to_all = distances(points[probes], points), distances(vectors[probes], vectors)
+    for row, probe in enumerate(probes.tolist()):
         # other files of the same recording would be trivial matches
         others = np.flatnonzero(group != group[probe])
         same = names[others] == names[probe]
         if not same.any():
             continue
-        distances = np.linalg.norm(points[others] - points[probe], axis=1)
-        vectors = part.described.vectors
-        plain = np.linalg.norm(vectors[others] - vectors[probe], axis=1)
-        judged.learned.append(same[np.argsort(distances, kind="stable")])
-        judged.plain.append(same[np.argsort(plain, kind="stable")])
-        judged.distances.append(distances)
+        learned = to_all[row, others]
+        judged.learned.append(same[np.argsort(learned, kind="stable")])
+        judged.plain.append(same[np.argsort(plain_to_all[row, others], kind="stable")])
+        judged.distances.append(learned)
         judged.same.append(same)
 
 
 def _pairs(judged: _Judged) -> tuple[FloatArray, BoolArray]:
     """Distances (m,) and whether the labels are equal (m,), of at most MAX_PAIRS pairs, taken at
     regular intervals."""
-    distances = np.concatenate([np.zeros(0), *judged.distances])
+    found = np.concatenate([np.zeros(0), *judged.distances])
     same = np.concatenate([np.zeros(0, dtype=bool), *judged.same])
-    step = max(1, -(-len(distances) // MAX_PAIRS))
-    return distances[::step], same[::step]
+    step = max(1, -(-len(found) // MAX_PAIRS))
+    return found[::step], same[::step]
 
 
 def _figures(judged: _Judged) -> dict[str, float | int]:

@@ -28,6 +28,10 @@ MAX_JUDGED = 1000
 """Of larger libraries, a random subset of this many clips is judged by the methods other than the
 default one, whose guesses are stored for every clip."""
 
+MAX_LIBRARY = 2500
+"""Largest number of clips from which these other methods learn and are judged: four fifths of them
+are as many as the methods use (app.models.recognition.multilinear.MAX_TAKES)."""
+
 _CURVE = ("threshold", "false_acceptance", "false_rejection")
 
 
@@ -134,12 +138,14 @@ def _figures(
     folds: int,
     seed: int,
 ) -> dict[str, dict[str, float]]:
-    fold = grouped_folds(groups, folds, seed=seed)
-    judged = np.sort(np.random.RandomState(seed).permutation(len(fold))[:MAX_JUDGED])
-    who, what = ([labels[i] for i in judged] for labels in (persons, tasks))
+    order = np.random.RandomState(seed).permutation(len(groups))
+    some = np.sort(order[:MAX_LIBRARY])
+    clips = Clips(np.asarray(samples), persons, tasks, groups).part(some)
+    fold = grouped_folds(groups, folds, seed=seed)[some]
+    judged = np.searchsorted(some, np.sort(order[:MAX_JUDGED]))
+    who, what = ([labels[i] for i in judged] for labels in (clips.persons, clips.tasks))
     figures = {}
     for name, method in methods.items():
-        clips = Clips(np.asarray(samples), persons, tasks, groups)
         try:
             guesses = _guesses(method, clips, fold, judged)
         except NotEnoughLabels:

@@ -17,12 +17,16 @@ from app.models.synthesis.model import Synthesis
 from app.models.synthesis.prediction import Predicted, predict
 from app.models.synthesis.solving import effects_only
 from app.numerics.arrays import FloatArray
+from app.numerics.euclidean import distances
 
 GIVEN_COUNTS = (1, 2, 3, 5, 8)
 """Numbers of other persons (or tasks) with takes that a prediction may use."""
 
 TRIALS = 32
 """Largest number of cells that are left out for each row; of more cells, a random subset."""
+
+TAKES_AT_ONCE = 64
+"""Takes that are compared with all clips at once. It bounds the memory."""
 
 NEW_TASK, NEW_PERSON = "new_task", "new_person"
 
@@ -169,20 +173,22 @@ def real_hit(record: Synthesis, drawn: list[Trial]) -> float | None:
     hits = []
     for trial in drawn:
         takes = record.clips_of(trial.person, trial.task)
-        for take in takes if len(takes) > 1 else []:
-            distances = np.linalg.norm(record.points - record.points[take], axis=1)
-            distances[take] = np.inf  # not the take itself
-            hits.append(record.labels_of(int(np.argmin(distances))) == (trial.person, trial.task))
+        for first in range(0, len(takes) if len(takes) > 1 else 0, TAKES_AT_ONCE):
+            some = takes[first : first + TAKES_AT_ONCE]
+            away = distances(record.points[some], record.points)
+            away[np.arange(len(some)), some] = np.inf  # not the take itself
+            nearest = away.argmin(axis=1)
+            hits += [record.labels_of(int(one)) == (trial.person, trial.task) for one in nearest]
     return round(float(np.mean(hits)), 4) if hits else None
 
 
 def _judged(record: Synthesis, kind: str, trial: Trial) -> Judged:
     label = (trial.person, trial.task)
     predicted = synthesized(record, kind, trial)
-    distances = record.distances(predicted.shape)
-    found = record.labels_of(int(np.argmin(distances)))
-    distances[record.clips_of(*label)] = np.inf
-    shown = record.labels_of(int(np.argmin(distances)))[1]
+    away = record.distances(predicted.shape)
+    found = record.labels_of(int(np.argmin(away)))
+    away[record.clips_of(*label)] = np.inf
+    shown = record.labels_of(int(np.argmin(away)))[1]
     baselines = [
         nearest_labels(record, baseline(record, kind, trial, by)) == label
         for by in (effects_only, task_mean)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,7 +19,12 @@ from app.models.words.correlated_words import (
 )
 from app.models.words.library import default_scores
 from app.models.words.model import clip_cosines, fit_word_model
-from app.models.words.symbol_space import DIMENSIONS, landmark_rows, possible_dimensions
+from app.models.words.symbol_space import (
+    DIMENSIONS,
+    LANDMARKS,
+    MAX_WHOLE_LIBRARY,
+    possible_dimensions,
+)
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.mds import metric_mds, place
 
@@ -30,12 +35,13 @@ PRIOR, DEFAULT, CCA_SCORE, PRINTED = "prior", "default", "cca-score", "printed"
 class LabeledClips:
     """N labeled clips.
 
-    distances: (N, N) of their symbols; inputs: (N, p) of the word model; words: V; labels: (N, V);
-    groups: N, equal for files of one recording; persons: N, equal for clips of one person, or None;
-    fold: (N,); likelihoods: (N, N) log likelihood of each motion under
-    each symbol, None without it.
+    landmarks: (C,) ascending rows of the clips that are landmarks of some fold; distances: (N, C)
+    of all symbols to theirs; inputs: (N, p) of the word model; words: V; labels: (N, V); groups: N,
+    equal for files of one recording; persons: N, equal for clips of one person, or None; fold:
+    (N,); likelihoods: (N, N) log likelihood of each motion under each symbol, None without it.
     """
 
+    landmarks: IntArray
     distances: FloatArray
     inputs: FloatArray
     words: tuple[str, ...]
@@ -58,8 +64,12 @@ class Scores:
     clips: Callable[[FloatArray], FloatArray]
 
 
-def score(clips: LabeledClips, training: IntArray, held_out: IntArray) -> dict[str, Scores]:
+def score(
+    clips: LabeledClips, training: IntArray, held_out: IntArray, points: Mapping[int, FloatArray]
+) -> dict[str, Scores]:
     """Scores of the held-out rows by each method, fitted on the training rows.
+
+    points: the `all_symbol_points` of the training rows.
 
     "cca" ranks by angle, as the search mode does, with the number of dimensions that the training
     rows choose. "cca-score" ranks by the probabilities that the mode reports (a fold with fewer
@@ -76,7 +86,6 @@ def score(clips: LabeledClips, training: IntArray, held_out: IntArray) -> dict[s
     model = fit_word_model(clips.inputs[training], labels)
     curve = calibrate(model, clips.inputs[training], labels, own_groups, who)
     found = default_scores(model, curve, clips.words, clips.inputs[held_out])
-    points = all_symbol_points(clips, training)
     count = chosen_dimensions(losses_of(clips, training, points))
     own, few = points[count], points[DIMENSIONS]
     words = fit_correlated_words(own[training], labels, own_groups, CCA)
@@ -102,16 +111,30 @@ def all_symbol_points(clips: LabeledClips, training: IntArray) -> dict[int, Floa
 
     As fit_symbol_spaces, but from distances that are computed once for all folds.
     """
-    rows = training[landmark_rows(len(training))]
-    among = clips.distances[np.ix_(rows, rows)]
+    rows = landmarks_among(training, len(clips.distances))
+    columns = np.searchsorted(clips.landmarks, rows)
+    to_landmarks = clips.distances[:, columns]
+    among = to_landmarks[rows]
     return {
-        count: place(clips.distances[:, rows], metric_mds(among, count))
+        count: place(to_landmarks, metric_mds(among, count))
         for count in possible_dimensions(CANDIDATES, len(training))
     }
 
 
+def landmarks_among(training: IntArray, count: int, *, seed: int = 0) -> IntArray:
+    """(L,) ascending landmarks among the `training` rows of `count` clips.
+
+    As landmark_rows, but of one random order of all clips. So the folds of a library share most of
+    their landmarks, and few distances are needed.
+    """
+    if len(training) <= MAX_WHOLE_LIBRARY:
+        return np.sort(training)
+    order = np.random.RandomState(seed).permutation(count)
+    return np.sort(order[np.isin(order, training)][:LANDMARKS])
+
+
 def losses_of(
-    clips: LabeledClips, training: IntArray, points: dict[int, FloatArray]
+    clips: LabeledClips, training: IntArray, points: Mapping[int, FloatArray]
 ) -> dict[int, float]:
     """The mean log loss of held-out words among the training rows, by number of dimensions."""
     own = {count: rows[training] for count, rows in points.items()}

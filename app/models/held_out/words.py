@@ -31,6 +31,7 @@ from app.models.held_out.word_methods import (
     PRIOR,
     LabeledClips,
     all_symbol_points,
+    landmarks_among,
     left_out_words,
     losses_of,
     score,
@@ -138,6 +139,9 @@ class _Tables:
     sets: FloatArray
 
 
+_Part = tuple[IntArray, IntArray, dict[int, FloatArray]]
+
+
 def held_out_word_figures(
     symbols: Sequence[GaussianHMM],
     inputs: FloatArray,
@@ -165,32 +169,37 @@ def held_out_word_figures(
     vocabulary = WordVocabulary.of(labels)
     own_groups = [groups[row] for row in chosen]
     folds = min(FOLDS, len(set(own_groups)))
+    fold = grouped_folds(own_groups, folds, seed=seed)
+    everything = np.arange(len(chosen))
+    parts = [(np.flatnonzero(fold != one), np.flatnonzero(fold == one)) for one in np.unique(fold)]
     own_symbols = [symbols[row] for row in chosen]
-    distances = symbol_distances(own_symbols, own_symbols)
-    likelihoods = None
+    landmarks, likelihoods = _landmarks(parts, len(chosen)), None
+    if sequence is not None:
+        landmarks = everything  # the likeliest symbols are found by the distances to all
+    own_landmarks = [own_symbols[row] for row in landmarks]
+    # the same list twice takes half the time
+    all_of_them = len(landmarks) == len(own_symbols)
+    distances = symbol_distances(own_symbols, own_symbols if all_of_them else own_landmarks)
     if sequence is not None:
         channels = sequence  # not None, also inside the lambda
         likelihoods = likelihoods_of_symbols(
             own_symbols, distances, lambda row: channels(int(chosen[row]))
         )
     clips = LabeledClips(
+        landmarks,
         distances,
         np.asarray(inputs)[chosen],
         vocabulary.words,
         vocabulary.label_matrix(labels),
         tuple(own_groups),
         None if persons is None else tuple(persons[row] for row in chosen),
-        grouped_folds(own_groups, folds, seed=seed),
+        fold,
         likelihoods,
     )
     _check_size(clips, folds)
-    parts = [
-        (np.flatnonzero(clips.fold != fold), np.flatnonzero(clips.fold == fold))
-        for fold in np.unique(clips.fold)
-    ]
-    everything = np.arange(len(chosen))
-    held_out, in_sample = _tables(clips, parts), _tables(clips, [(everything, everything)])
+    held_out = _tables(clips, [(*part, all_symbol_points(clips, part[0])) for part in parts])
     points = all_symbol_points(clips, everything)
+    in_sample = _tables(clips, [(everything, everything, points)])
     losses = losses_of(clips, everything, points)
     chosen_points = points[chosen_dimensions(losses)]
     return WordEvaluation(
@@ -215,21 +224,27 @@ def _chosen(label_sets: Sequence[Sequence[str]], seed: int) -> IntArray:
     return np.sort(np.random.RandomState(seed).permutation(labeled)[:MAX_CLIPS])
 
 
+def _landmarks(parts: Sequence[tuple[IntArray, IntArray]], count: int) -> IntArray:
+    """(C,) ascending rows of all landmarks of the training rows of `parts`, and of all rows."""
+    trainings = [np.arange(count), *(training for training, _ in parts)]
+    return np.unique(np.concatenate([landmarks_among(rows, count) for rows in trainings]))
+
+
 def _check_size(clips: LabeledClips, folds: int) -> None:
     training = len(clips.fold) - int(np.bincount(clips.fold, minlength=1).max(initial=0))
     if folds < 2 or training < MIN_CLIPS:
         raise NotEnoughLabels(f"{len(clips.fold)} labeled clips are too few to hold some out.")
 
 
-def _tables(clips: LabeledClips, parts: Sequence[tuple[IntArray, IntArray]]) -> dict[str, _Tables]:
-    """Score tables by method; parts: pairs of rows to fit on and rows to score.
+def _tables(clips: LabeledClips, parts: Sequence[_Part]) -> dict[str, _Tables]:
+    """Score tables by method; parts: rows to fit on, rows to score, and the `all_symbol_points`.
 
     The rows to score of all parts together are all rows.
     """
     count, vocabulary = clips.labels.shape
     tables: dict[str, _Tables] = {}
-    for training, held_out in parts:
-        for name, scores in score(clips, training, held_out).items():
+    for training, held_out, points in parts:
+        for name, scores in score(clips, training, held_out, points).items():
             if name not in tables:
                 shapes = (count, vocabulary), (vocabulary, count), (count, count)
                 tables[name] = _Tables(*(np.zeros(shape) for shape in shapes))

@@ -40,8 +40,12 @@ UNSEPARATED_WEIGHT = 0.05
 MIN_LABELS = 2
 """Number of labels with at least two clips each that a metric needs."""
 
-MAX_CLIPS = 20_000
-"""Largest number of labeled clips in a fit, drawn with a fixed seed; more change it very little."""
+MAX_CLIPS = 5000
+"""Largest number of labeled clips in a fit, drawn with a fixed seed; more change it very little. It
+bounds the memory: a clip takes 12 kB, some times over."""
+
+AT_ONCE = 2000
+"""Clips whose coordinates are computed at once. It bounds the memory."""
 
 _MIN_DIVISOR = 1e-9
 """Avoids divisions by 0."""
@@ -109,7 +113,13 @@ class MetricAxes:
 
     def project(self, described: ClipDescriptors) -> FloatArray:
         """(n, k) coordinates of unit length (0 for a clip at the center)."""
-        points = (described.concatenated() - self.center) @ self.axes
+        places = np.arange(len(described))
+        blocks = [
+            (described.part(places[first : first + AT_ONCE]).concatenated() - self.center)
+            @ self.axes
+            for first in range(0, len(described), AT_ONCE)
+        ]
+        points = np.concatenate([np.zeros((0, self.axes.shape[1])), *blocks])
         lengths = np.linalg.norm(points, axis=1, keepdims=True)
         return np.asarray(points / np.maximum(lengths, _MIN_DIVISOR))
 

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.errors import NotEnoughLabels
-from app.models.cells import Cells, cell_means, find_cells
+from app.models.cells import Cells, cell_means, even_cells, find_cells
 from app.models.recognition.answers import Recognition, answer, given
-from app.models.recognition.multilinear import DIMENSIONS, shares
+from app.models.recognition.multilinear import DIMENSIONS, MAX_TAKES, shares
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.principal_axes import PrincipalAxes, principal_axes
 
@@ -37,7 +37,7 @@ def fit_flat_pca(
     dimensions: int = DIMENSIONS,
 ) -> FlatPCA:
     """Fit on samples (clips, w) that have both labels. Raises NotEnoughLabels without any."""
-    use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if all(labels)]
+    use = even_cells(persons, tasks, MAX_TAKES)
     if not use:
         raise NotEnoughLabels("Flat PCA needs clips with a person and a task.")
     cells = find_cells([persons[i] for i in use], [tasks[i] for i in use])

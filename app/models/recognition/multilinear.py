@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from app.errors import NotEnoughLabels
-from app.models.cells import Cells, cell_means, find_cells, fit_effects
+from app.models.cells import Cells, cell_means, even_cells, find_cells, fit_effects
 from app.models.recognition.answers import Recognition, answer, given
 from app.models.recognition.calibration import softmax
 from app.models.recognition.task_means import TaskMeans, fit_task_means
@@ -31,6 +31,10 @@ MULTILINEAR_VERSION = 2
 
 DIMENSIONS = 100
 """The largest number of coordinates of the sample mode."""
+
+MAX_TAKES = 2000
+"""The largest number of clips of the fit, of more cells one of each. The model holds the means of
+cells: of a larger library, each cell with many takes gives some of them."""
 
 MIN_SINGULAR = 0.005
 """Relative cut-off of the pseudo-inverses of B_a and C_p. Slices filled by completion have nearly
@@ -144,7 +148,7 @@ def fit_multilinear(
     of the clip's task; None leaves them as they are.
     Raises NotEnoughLabels without two persons or two tasks, or with more than MAX_CELLS cells.
     """
-    use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if all(labels)]
+    use = even_cells(persons, tasks, MAX_TAKES)
     cells = find_cells([persons[i] for i in use], [tasks[i] for i in use])
     if min(len(cells.persons), len(cells.tasks)) < 2:
         raise NotEnoughLabels("The multilinear model needs two persons and two tasks.")

@@ -15,9 +15,11 @@ from typing import Any
 
 import numpy as np
 
+from app.models.cells import even_cells
 from app.models.holding_out import HeldOut, rounds
 from app.models.recognition.answers import Answer, Recognition, answer, given
 from app.models.recognition.calibration import NEW, Calibration, fit_calibration
+from app.models.recognition.multilinear import MAX_TAKES
 from app.models.recognition.task_model import JOINTS, Reading, TaskModel, fit_task_model, objective
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
 
@@ -83,10 +85,11 @@ def fit_tensor_recognizer(
 ) -> TensorRecognizer:
     """Fit on motion samples (clips, 1250); clips without both labels are left out.
 
-    groups: (clips,) clips of one recording share a value and are held out together.
+    groups: (clips,) clips of one recording share a value and are held out together. Of a library of
+    more than MAX_TAKES clips, evenly chosen takes of each cell are used.
     Raises NotEnoughLabels without a cell, or with more than MAX_CELLS cells.
     """
-    use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if all(labels)]
+    use = even_cells(persons, tasks, MAX_TAKES)
     poses = poses_of(np.asarray(samples)[use])
     who, what = [persons[i] for i in use], [tasks[i] for i in use]
     together = [groups[i] if groups is not None else str(i) for i in use]

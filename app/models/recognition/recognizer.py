@@ -43,6 +43,10 @@ MOSTLY_REPEATED = 0.5
 """The takes of a library count as repeated if at least this share of its clips has another clip of
 the same person at the same task."""
 
+MAX_FOR_AXES = 2000
+"""Largest number of clips, evenly spread, from which the axes of the views are learned. The
+hypotheses are learned from all clips."""
+
 AT_ONCE = 256
 """Clips that are compared with all hypotheses at once. It bounds the memory."""
 
@@ -139,8 +143,10 @@ def fit_recognizer(
     together = [groups[i] if groups is not None else str(i) for i in use]
     rows = both_views(np.asarray(samples)[use], sample_length)
     cells = find_cells(persons, tasks)
-    sample = principal_axes(rows.sample, SAMPLE_DIMENSIONS)
-    wide = principal_axes(rows.wide, wide_dimensions(len(cells)))
+    spread = np.linspace(0, len(use) - 1, min(len(use), MAX_FOR_AXES))
+    some = rows.of(spread.round().astype(np.int64))
+    sample = principal_axes(some.sample, SAMPLE_DIMENSIONS)
+    wide = principal_axes(some.wide, wide_dimensions(len(cells)))
     points = BothViews(sample.project(rows.sample), wide.project(rows.wide))
     own_copies = [copies[i] for i in use] if copies is not None else []
     copied = _copied(points, own_copies, (sample, wide), sample_length)

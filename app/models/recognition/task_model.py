@@ -20,8 +20,8 @@ from typing import Any
 import numpy as np
 
 from app.errors import NotEnoughLabels
-from app.models.cells import cell_means, find_cells
-from app.models.recognition.multilinear import MAX_CELLS, complete_tensor
+from app.models.cells import cell_means, even_cells, find_cells
+from app.models.recognition.multilinear import MAX_CELLS, MAX_TAKES, complete_tensor
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.euclidean import squared_distances
@@ -136,7 +136,7 @@ def fit_task_model(
     never compared with a probe. ranks: columns kept of S_position, S_people and S_task, None for
     all. Raises NotEnoughLabels without a cell, or with more than MAX_CELLS cells.
     """
-    use = [i for i, labels in enumerate(zip(persons, tasks, strict=True)) if all(labels)]
+    use = even_cells(persons, tasks, MAX_TAKES)
     cells = find_cells([persons[i] for i in use], [tasks[i] for i in use])
     if not len(cells):
         raise NotEnoughLabels("The task model needs motions with a person and a task.")

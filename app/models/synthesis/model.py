@@ -13,14 +13,14 @@ accurate. After these choices, all steps are linear and deterministic.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from app.analysis.descriptors.motion_shape import SHAPE_LENGTH
 from app.errors import NotEnoughLabels
-from app.models.cells import Cells, find_cells
+from app.models.cells import Cells, even_takes, find_cells
 from app.models.synthesis.agreement import agree, agreement
 from app.models.synthesis.basis import weights
 from app.models.synthesis.sides import sides, to_side
@@ -32,6 +32,10 @@ SYNTHESIS_VERSION = 2
 
 DIMENSIONS = 64
 """Number of coordinates in which real clips are compared with synthesized motions."""
+
+MAX_TAKES = 2000
+"""The largest number of takes whose means are computed: of more, evenly chosen takes of each cell.
+All takes stay in the model as clips to compare with."""
 
 MAX_CELLS = 20_000
 """Largest number of cells; they take about 220 MB."""
@@ -217,6 +221,9 @@ def _cell_means(rows: FloatArray, cells: Cells) -> tuple[FloatArray, FloatArray]
     """(cells, 1378) the mean of the takes of each cell (or, if they do not agree, the take that is
     most like the others), and (cells,) their agreement."""
     used = _of_one_kind(rows, cells)
+    own = cells.member[used]
+    of_one_kind = replace(cells, member=own, takes=np.bincount(own))
+    used = used[even_takes(of_one_kind, MAX_TAKES)]
     member, rows = cells.member[used], rows[used]
     order = np.argsort(member, kind="stable")
     takes = np.split(order, np.cumsum(np.bincount(member))[:-1])

@@ -22,8 +22,12 @@ from app.deadline import check
 from app.numerics.arrays import FloatArray, IntArray
 from app.numerics.hmm.model import GaussianHMM, log_likelihood
 
-BLOCK = 1000
-"""The number of targets that are scored at once. It bounds the memory to BLOCK * K^2 floats."""
+BLOCK = 500
+"""The number of targets that are scored at once: their log probabilities stay in a processor's
+cache."""
+
+ALONE_AT_ONCE = 512
+"""The number of sources that are scored under themselves at once."""
 
 _LOG_ZERO = np.float32(-1e30)
 """The log probability of an impossible event. It is finite, so that differences are not NaN."""
@@ -31,11 +35,11 @@ _LOG_ZERO = np.float32(-1e30)
 
 @dataclass(frozen=True, slots=True)
 class _Targets:
-    """Models stacked for scoring.
+    """Models stacked for scoring: a set of M targets for each of S sources.
 
-    weights: (2 D + 1, K, M); a product with the moments of a source gives expected log
-    densities. log_stay: (K, M). log_move: (K, M), of moving into each state. The states beyond a
-    model's own are never entered.
+    weights: (S, 2 D + 1, K, M); a product with the moments of a source gives expected log
+    densities. log_stay: (S, 1, K, M). log_move: (S, 1, K - 1, M), of moving into each state but
+    the first. The states beyond a model's own are never entered.
     """
 
     weights: FloatArray
@@ -54,17 +58,24 @@ def expected_path_divergences(
     divergences = np.zeros((len(sources), len(targets)))
     if not sources or not targets:
         return divergences
-    states = max(model.states for model in (*sources, *targets))
-    for first in range(0, len(targets), BLOCK):
-        block = targets[first : first + BLOCK]
-        stack = _stack(block, states)
+    paths = [source.expected_path() for source in sources]
+    # neighbors have paths of about one length, and about as many states
+    in_order = np.argsort([len(path) for path in paths], kind="stable")
+    for some in _parts(in_order, ALONE_AT_ONCE):
+        models = [sources[row] for row in some]
+        alone = _stack([[model] for model in models])
+        divergences[some] = _scores(models, [paths[row] for row in some], alone)
+    columns = np.argsort([target.states for target in targets], kind="stable")
+    for block in _parts(columns, BLOCK):
+        stack = _stack([[targets[column] for column in block]])
         for row, source in enumerate(sources):
             check()
-            # the last column is the source itself: d = (score of the source) - (score of a target)
-            _write(stack, len(block), source)
-            scores = _scores(source, stack)
-            divergences[row, first : first + len(block)] = scores[-1] - scores[:-1]
+            divergences[row, block] -= _scores([source], [paths[row]], stack)[0]
     return np.maximum(divergences, 0.0)
+
+
+def _parts(rows: IntArray, size: int) -> list[IntArray]:
+    return [rows[first : first + size] for first in range(0, len(rows), size)]
 
 
 def symmetric_divergences(left: Sequence[GaussianHMM], right: Sequence[GaussianHMM]) -> FloatArray:
@@ -96,65 +107,79 @@ def monte_carlo_divergence(
     return total / (draws * frames)
 
 
-def _stack(models: Sequence[GaussianHMM], states: int) -> _Targets:
-    """All models stacked, with `states` states each, and an empty last column for another model."""
-    count, channels = len(models) + 1, models[0].means.shape[1]
-    stack = _Targets(
-        np.zeros((2 * channels + 1, states, count), dtype=np.float32),
-        np.zeros((states, count), dtype=np.float32),
-        np.full((states, count), _LOG_ZERO, dtype=np.float32),
-    )
-    for column, model in enumerate(models):
-        _write(stack, column, model)
-    return stack
+def _stack(sets: Sequence[Sequence[GaussianHMM]]) -> _Targets:
+    """Some sets of equally many models."""
+    shape = len(sets), max(model.states for models in sets for model in models), len(sets[0])
+    width = 2 * sets[0][0].means.shape[1] + 1
+    weights = np.zeros((shape[0], width, *shape[1:]), dtype=np.float32)
+    log_stay = np.zeros((shape[0], 1, *shape[1:]), dtype=np.float32)
+    log_move = np.full((shape[0], 1, shape[1] - 1, shape[2]), _LOG_ZERO, dtype=np.float32)
+    for row, models in enumerate(sets):
+        for column, model in enumerate(models):
+            own = model.states
+            # log N(x) = -(x^2 - 2 m x + m^2) / 2 v - log(2 pi v) / 2: its expectation is linear in
+            # the moments E[x^2], E[x] and 1
+            precision = 1.0 / np.asarray(model.variances, dtype=np.float64)
+            means = np.asarray(model.means, dtype=np.float64)
+            constant = np.log(2.0 * np.pi / precision) + means**2 * precision
+            weights[row, :-1, :own, column] = np.hstack([-0.5 * precision, means * precision]).T
+            weights[row, -1, :own, column] = -0.5 * constant.sum(axis=1)
+            log_stay[row, 0, :own, column] = model.log_stay()
+            log_move[row, 0, : own - 1, column] = model.log_move()
+    return _Targets(weights, log_stay, log_move)
 
 
-def _write(stack: _Targets, column: int, model: GaussianHMM) -> None:
-    """Write a model into a column of the stack, in place of the model there."""
-    own = model.states
-    # log N(x) = -(x^2 - 2 m x + m^2) / 2 v - log(2 pi v) / 2: its expectation is linear in the
-    # moments E[x^2], E[x] and 1
-    precision = 1.0 / np.asarray(model.variances, dtype=np.float64)
-    means = np.asarray(model.means, dtype=np.float64)
-    constant = np.log(2.0 * np.pi / precision) + means**2 * precision
-    weights = np.hstack([-0.5 * precision, means * precision])
-    stack.weights[:-1, :own, column] = weights.T
-    stack.weights[-1, :own, column] = -0.5 * constant.sum(axis=1)
-    stack.weights[:, own:, column] = 0.0
-    stack.log_stay[:own, column], stack.log_stay[own:, column] = model.log_stay(), 0.0
-    stack.log_move[1:own, column], stack.log_move[own:, column] = model.log_move(), _LOG_ZERO
+def _scores(
+    sources: Sequence[GaussianHMM], paths: Sequence[IntArray], targets: _Targets
+) -> FloatArray:
+    """(S, M) the expected log likelihood, in nats per frame, of each source's expected path.
 
-
-def _scores(source: GaussianHMM, targets: _Targets) -> FloatArray:
-    """(M,) the expected log likelihood, in nats per frame, of the source's expected path."""
-    means = np.asarray(source.means, dtype=np.float64)
-    seconds = means**2 + source.variances  # E[x^2] in each state
-    moments = np.hstack([seconds, means, np.ones((source.states, 1))]).astype(np.float32)
-    states, count = targets.log_stay.shape
-    # (K, 2 D + 1) @ (2 D + 1, K' * M) -> E over the source's state of log density
-    weights = targets.weights.reshape(len(targets.weights), -1)
-    expected = (moments @ weights).reshape(source.states, states, count)
-    path = source.expected_path()
-    alpha = np.full((states, count), _LOG_ZERO, dtype=np.float32)
-    alpha[0] = expected[path[0], 0]
-    arrived = expected[:, 1:] + targets.log_move[1:]
-    stayed = np.add(expected, targets.log_stay, out=expected)
-    _run(alpha, stayed, arrived, path[1:])
-    totals = np.logaddexp.reduce(alpha.astype(np.float64), axis=0)
-    return np.asarray(totals / len(path))
-
-
-def _run(alpha: FloatArray, stayed: FloatArray, arrived: FloatArray, path: IntArray) -> None:
-    """Update the log probabilities `alpha` (K, M) of the best paths, in place, along `path`.
-
-    path: (frames,) the source's states. stayed: (K_source, K, M) and arrived:
-    (K_source, K - 1, M): what a frame in each state of the source adds, if the target stays in
-    its state or moves into it. Eq. 1 sums over both; we take the larger, in a third of the time.
-    Compared with Monte Carlo on 16 real clips, both are equally good: Spearman's rank correlation
-    is .9979 (sum: .9980), and the median difference 1.7 % (sum: 1.6 %).
+    paths: S, in rising order of length. targets: one set for each source.
     """
-    moved = np.empty_like(alpha[1:])
-    for state in path:
-        np.add(alpha[:-1], arrived[state], out=moved)
-        alpha += stayed[state]
-        np.maximum(alpha[1:], moved, out=alpha[1:])
+    most = max(source.states for source in sources)
+    moments = np.zeros((len(sources), most, targets.weights.shape[1]), dtype=np.float32)
+    for row, source in enumerate(sources):
+        means = np.asarray(source.means, dtype=np.float64)
+        seconds = means**2 + source.variances  # E[x^2] in each state
+        moments[row, : source.states] = np.hstack([seconds, means, np.ones((source.states, 1))])
+    *_, states, count = targets.weights.shape
+    # (S, K, 2 D + 1) @ (S, 2 D + 1, K' * M) -> E over the source's state of log density
+    expected = moments @ targets.weights.reshape(*targets.weights.shape[:2], -1)
+    expected = expected.reshape(len(sources), most, states, count)
+    alpha = np.full((len(sources), states, count), _LOG_ZERO, dtype=np.float32)
+    alpha[:, 0] = expected[:, 0, 0]  # each path begins in the first state
+    stayed = np.add(expected, targets.log_stay, out=expected)
+    _run(alpha, stayed, (targets.log_move - targets.log_stay[:, :, 1:])[:, 0], paths)
+    largest = alpha.max(axis=1).astype(np.float64)
+    totals = largest + np.log(np.exp(alpha - largest[:, None]).sum(axis=1))
+    return np.asarray(totals / np.array([len(path) for path in paths])[:, None])
+
+
+def _run(
+    alpha: FloatArray, stayed: FloatArray, more: FloatArray, paths: Sequence[IntArray]
+) -> None:
+    """Update the log probabilities `alpha` (S, K, M) of the best paths, in place, along `paths`.
+
+    paths: S arrays (frames,), the states of each source, in rising order of length. stayed:
+    (S, K_source, K, M) what a frame in each state of the source adds, if the target stays in its
+    state; more: (S, K - 1, M) what it adds more if the target moves into the state. Eq. 1 sums over
+    both; we take the larger, in a third of the time. Compared with Monte Carlo on 16 real clips,
+    both are equally good: Spearman's rank correlation is .9979 (sum: .9980), and the median
+    difference 1.7 % (sum: 1.6 %).
+    """
+    lengths = np.array([len(path) for path in paths])
+    states = np.zeros((len(paths), lengths[-1]), dtype=np.int64)
+    for row, path in enumerate(paths):
+        states[row, : len(path)] = path
+    # paths that have ended are left out: they are the first ones
+    ended = np.searchsorted(lengths, np.arange(lengths[-1]), side="right")
+    moved = np.empty_like(alpha[:, 1:])
+    for frame in range(1, int(lengths[-1])):
+        first = ended[frame]
+        own, out = alpha[first:], moved[first:]
+        np.add(own[:, :-1], more[first:], out=out)
+        np.maximum(own[:, 1:], out, out=own[:, 1:])
+        if len(own) == 1:
+            own[0] += stayed[-1, states[-1, frame]]
+        else:
+            own += stayed[np.arange(first, len(paths)), states[first:, frame]]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -40,7 +41,8 @@ class TrainingSet:
     """N ready clips, sorted by id, at a library version.
 
     groups: (N,) equal for clips of one recording; symbols: N; statistics: (N, 131); signs: (N, 44);
-    samples: (N, 1250); vectors: (N, 128); wide: (N, 512); angles: (642,) by clip id, missing for
+    samples: (N, 1250) and wide: (N, 512), the widest, float32 as they are stored; vectors: (N,
+    128); angles: (642,) by clip id, missing for
     clips of an analysis without joint angles; positions: (n, 13, 3) meters, by the id of the clips
     that are copied (app.models.recognition.copies); is_anonymous: the set has no persons, since
     persons must not be recognized; spans: the annotated parts of the clips.
@@ -176,9 +178,9 @@ def read_training_set(store: Store, filter: ClipFilter = READY) -> TrainingSet:
         ),
         statistics=_stacked([found["symbol_statistics"][clip_id] for clip_id in whole]),
         signs=_stacked([found[SIGNS][clip_id] for clip_id in whole]),
-        samples=_stacked([found["motion_sample"][clip_id] for clip_id in whole]),
+        samples=_stacked([found["motion_sample"][clip_id] for clip_id in whole], np.float32),
         vectors=_stacked([found["motion_vector"][clip_id] for clip_id in whole]),
-        wide=_stacked([found[WIDE][clip_id] for clip_id in whole]),
+        wide=_stacked([found[WIDE][clip_id] for clip_id in whole], np.float32),
         angles=angles,
         positions=positions,
         spans=spans,
@@ -204,5 +206,5 @@ def recording_of_clip(clip: ClipRecord) -> str:
     return f"{recording_of(clip.file_name)}|{clip.person}|{clip.task}"
 
 
-def _stacked(rows: list[FloatArray]) -> FloatArray:
-    return np.stack(rows).astype(np.float64) if rows else np.zeros((0, 0))
+def _stacked(rows: list[FloatArray], kind: type[np.floating[Any]] = np.float64) -> FloatArray:
+    return np.stack(rows, dtype=kind, casting="same_kind") if rows else np.zeros((0, 0))

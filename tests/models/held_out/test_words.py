@@ -1,10 +1,13 @@
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from app.errors import NotEnoughLabels
 from app.models.held_out import words as word_figures
+from app.models.held_out.word_methods import landmarks_among
 from app.models.held_out.words import held_out_word_figures
+from app.models.words.symbol_space import LANDMARKS
 from app.numerics.hmm.model import mean_trajectory
 from tests.models.word_clips import word_clips
 
@@ -101,3 +104,17 @@ def test_recognition_through_the_likeliest_symbol_needs_the_motions() -> None:
         symbols, statistics, words, groups, sequence=lambda row: motions[(row + 1) % len(motions)]
     )
     assert crossed.figures[-1].top_3_recognition < figures["cca-symbol"].top_3_recognition - 0.2
+
+
+def test_folds_of_a_large_library_share_most_of_their_landmarks() -> None:
+    folds = np.arange(400) % 5
+    chosen = [landmarks_among(np.flatnonzero(folds != one), 400) for one in range(5)]
+    for one, landmarks in enumerate(chosen):
+        assert len(landmarks) == LANDMARKS
+        assert not (folds[landmarks] == one).any()  # no clip that is held out
+    assert len(np.unique(np.concatenate(chosen))) < 1.5 * LANDMARKS
+
+
+def test_all_clips_of_a_small_library_are_landmarks() -> None:
+    training = np.array([4, 1, 7])
+    np.testing.assert_array_equal(landmarks_among(training, 10), [1, 4, 7])
