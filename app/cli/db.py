@@ -24,7 +24,7 @@ def upgrade(context: typer.Context) -> None:
     settings = settings_of(context)
     refuse_missing_library(settings, "upgrade")
     make_private(settings.data_dir)
-    identity.refuse_files_without_database(settings.database, settings.files_dir)
+    identity.refuse_files_without_database(settings.database, settings.files_place)
     state = schema.upgrade(settings.database)
     typer.echo(f"The database is at revision {state.current}.")
 
@@ -59,9 +59,9 @@ def adopt_files(context: typer.Context) -> None:
     from app.store import identity
 
     settings = settings_of(context)
-    adopted = identity.adopt(settings.database, settings.files_dir)
+    adopted = identity.adopt(settings.database, settings.files_place)
     typer.echo(
-        f"{settings.files_dir} now belongs to this database. It names "
+        f"{settings.files_url or settings.files_dir} now belongs to this database. It names "
         f"{adopted.present} files that exist and {adopted.missing} that are missing. The next "
         f"worker moves {adopted.unknown} other files to the quarantine."
     )
