@@ -138,5 +138,5 @@ licenses: install
 # What the image is built from, with the SHA-256 of every package: after each change of a version.
 lock: install
 	$(PYTHON) -m pip --python $(BIN)/python install --quiet --disable-pip-version-check uv
-	$(UV) pyproject.toml --extra audio --extra plots --extra postgres --extra words -o docker/requirements.txt
+	$(UV) pyproject.toml --extra audio --extra plots --extra postgres --extra s3 --extra words -o docker/requirements.txt
 	printf 'setuptools\nnodejs-wheel-binaries\npip-audit\ncyclonedx-bom\n' | $(UV) - -o docker/tools.txt

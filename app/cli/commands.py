@@ -100,6 +100,12 @@ COMMANDS = {
         "program",
         "Words and persons for parts of clips, with start and end.",
     ),
+    "migrate-to": CommandEntry(
+        "app.cli.migrate_to",
+        "migrate_to",
+        "Copy the library into a PostgreSQL database, and its files to a bucket, while it is in"
+        " use.",
+    ),
     "backup": CommandEntry(
         "app.cli.backup",
         "backup",

@@ -24,7 +24,7 @@ def upgrade(context: typer.Context) -> None:
     settings = settings_of(context)
     refuse_missing_library(settings, "upgrade")
     make_private(settings.data_dir)
-    identity.refuse_files_without_database(settings.database, settings.files_dir)
+    identity.refuse_files_without_database(settings.database, settings.files_place)
     state = schema.upgrade(settings.database)
     typer.echo(f"The database is at revision {state.current}.")
 
@@ -37,12 +37,18 @@ def restore(
     """Load the dump of a backup into an empty PostgreSQL database.
 
     KINEDEX_DATABASE_URL names the database, and KINEDEX_DATA_DIR the backup or a copy of it, which
-    holds the files. A backup of an SQLite library needs no such command: start Kinedex on it.
+    holds the files; if KINEDEX_FILES_URL names a bucket, they are copied into it. A backup of an
+    SQLite library needs no such command: start Kinedex on it.
     """
     from app.store.upkeep.dump import restore as restore_dump
+    from app.store.upkeep.move import restore_files_to
 
     settings = settings_of(context)
     restore_dump(settings.database, path)
+    if settings.files_url is not None:
+        number = restore_files_to(settings.files_place, path)
+        typer.echo(f"The database of {path} is restored, and {number} files are in the bucket.")
+        return
     typer.echo(
         f"The database of {path} is restored. Start Kinedex with KINEDEX_DATA_DIR set to {path}, or"
         " to a copy of it; `kinedex verify` compares its files with the database."
@@ -59,9 +65,9 @@ def adopt_files(context: typer.Context) -> None:
     from app.store import identity
 
     settings = settings_of(context)
-    adopted = identity.adopt(settings.database, settings.files_dir)
+    adopted = identity.adopt(settings.database, settings.files_place)
     typer.echo(
-        f"{settings.files_dir} now belongs to this database. It names "
+        f"{settings.files_url or settings.files_dir} now belongs to this database. It names "
         f"{adopted.present} files that exist and {adopted.missing} that are missing. The next "
         f"worker moves {adopted.unknown} other files to the quarantine."
     )

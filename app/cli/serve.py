@@ -46,7 +46,7 @@ def serve(
 
     settings = settings_of(context, host=host, port=port, root_path=root_path, processes=processes)
     configure_logging(settings.log_level.upper())
-    identity.prepare(settings.database, settings.files_dir)
+    identity.prepare(settings.database, settings.files_place)
     refuse_exposure_without_keys(settings)
     refuse_taken_address(settings)
     raise typer.Exit(supervise(settings, with_worker))

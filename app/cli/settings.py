@@ -74,8 +74,8 @@ def open_store(context: typer.Context, *, for_copy: bool = False) -> Iterator[St
     settings = settings_of(context)
     refuse_missing_library(settings)
     check = identity.check_copyable if for_copy else identity.check
-    library_id = check(settings.database, settings.files_dir)
-    store = Store.open(settings.database, settings.files_dir, library_id)
+    library_id = check(settings.database, settings.files_place)
+    store = Store.open(settings.database, settings.files_place, library_id)
     try:
         yield store
     finally:
@@ -120,5 +120,5 @@ def refuse_missing_library(settings: Settings, command: str = "") -> None:
             "--data-dir or KINEDEX_DATA_DIR; `kinedex serve`, `import` and `demo` make a library."
         )
     if command not in MAKES_LIBRARY and not identity.is_database_there(settings.database):
-        identity.refuse_files_without_database(settings.database, settings.files_dir)
+        identity.refuse_files_without_database(settings.database, settings.files_place)
         raise ConfigurationError(f"There is no library in {settings.data_dir}.")

@@ -21,6 +21,9 @@ from pydantic_settings import (
     TomlConfigSettingsSource,
 )
 
+from app.config.files import FilesSettings
+from app.store.files.bucket import FilesPlace
+
 ENV_PREFIX = "KINEDEX_"
 CONFIG_FILE_ENV = "KINEDEX_CONFIG_FILE"
 CONFIG_FILE_DEFAULT = "kinedex.toml"
@@ -38,7 +41,7 @@ _Listed = Annotated[tuple[str, ...], NoDecode]
 """A list that the environment and flags write with commas."""
 
 
-class Settings(BaseSettings):
+class Settings(FilesSettings):
     """All settings; each field's description is its documentation."""
 
     model_config = SettingsConfigDict(
@@ -294,8 +297,13 @@ class Settings(BaseSettings):
 
     @property
     def files_dir(self) -> Path:
-        """Directory of the content-addressed file store."""
+        """Directory of the files, or what this machine needs for those of a bucket."""
         return self.data_dir / "files"
+
+    @property
+    def files_place(self) -> FilesPlace:
+        """Where the files are: `files_dir`, or a bucket. Raises ConfigurationError."""
+        return self.files_at(self.files_dir)
 
     @property
     def cache_dir(self) -> Path:

@@ -24,8 +24,8 @@ def refuse_exposure_without_keys(settings: Settings) -> None:
     """
     if settings.listens_on_loopback:
         return
-    identity.prepare(settings.database, settings.files_dir)
-    store = Store.open(settings.database, settings.files_dir)
+    identity.prepare(settings.database, settings.files_place)
+    store = Store.open(settings.database, settings.files_place)
     try:
         with store.read() as tx:
             is_guarded = keys.is_any_valid(tx)

@@ -8,14 +8,14 @@ does not find them.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 
-from app.errors import LibraryMismatch, StorageError
+from app.errors import LibraryMismatch
 from app.store.clips import versions as library
 from app.store.database import schema
 from app.store.database.engine import Database, Tx, database_file
+from app.store.files.bucket import FilesPlace
 from app.store.files.files import FileStore
-from app.store.files.id_file import read_id, write_id
+from app.store.files.places import open_files
 from app.store.jobs import references
 
 WHAT_TO_DO = (
@@ -37,55 +37,55 @@ class AdoptionReport:
     unknown: int
 
 
-def prepare(database_url: str, files_dir: Path) -> str:
+def prepare(database_url: str, files_at: FilesPlace) -> str:
     """Makes an empty library or checks the existing one; returns its id. Every start calls this.
 
     Raises LibraryMismatch, before any change, if files and database do not belong together;
     DatabaseOutOfDate; StorageError.
     """
     if not is_database_there(database_url):
-        _refuse_files(database_url, files_dir)
+        _refuse_files(database_url, files_at)
         schema.upgrade(database_url)
     schema.check(database_url)
-    return _checked(database_url, files_dir, writes=True)
+    return _checked(database_url, files_at, writes=True)
 
 
-def check(database_url: str, files_dir: Path) -> str:
+def check(database_url: str, files_at: FilesPlace) -> str:
     """As `prepare`, but makes nothing."""
     schema.check(database_url)
-    return _checked(database_url, files_dir, writes=False)
+    return _checked(database_url, files_at, writes=False)
 
 
-def check_copyable(database_url: str, files_dir: Path) -> str | None:
+def check_copyable(database_url: str, files_at: FilesPlace) -> str | None:
     """As `check`, for a copy before an upgrade: the database may have an older schema.
 
     Returns None if that schema has no id of the library yet.
     """
     schema.check_known(database_url)
-    database = Database(database_url)
+    database, files = Database(database_url), open_files(files_at)
     try:
         with database.read() as tx:
             ours = library.library_id_if_any(tx)
-            if _read_id(files_dir) is None:
-                _refuse_foreign_files(tx, FileStore(files_dir), database_url)
+            if files.read_id() is None:
+                _refuse_foreign_files(tx, files, database_url)
     finally:
         database.close()
-    _refuse_other_library(ours, database_url, files_dir)
+    _refuse_other_library(ours, database_url, files)
     return ours
 
 
-def refuse_files_without_database(database_url: str, files_dir: Path) -> None:
+def refuse_files_without_database(database_url: str, files_at: FilesPlace) -> None:
     """Raises LibraryMismatch if there is no database, but the folder already holds files."""
     if not is_database_there(database_url):
-        _refuse_files(database_url, files_dir)
+        _refuse_files(database_url, files_at)
 
 
-def _refuse_files(database_url: str, files_dir: Path) -> None:
-    files = FileStore(files_dir)
-    if _read_id(files_dir) is None and next(iter(files), None) is None:
+def _refuse_files(database_url: str, files_at: FilesPlace) -> None:
+    files = open_files(files_at)
+    if files.read_id() is None and next(iter(files), None) is None:
         return
     raise LibraryMismatch(
-        f"There is no library in {_database_name(database_url)}, but {files_dir} is the folder of "
+        f"There is no library in {_database_name(database_url)}, but {files.name} holds the "
         f"files of a library ({sum(1 for _ in files)} files). If the database was moved, put it "
         "back; if KINEDEX_DATABASE_URL or KINEDEX_DATA_DIR is wrong, correct it. To begin a new "
         "library, move that folder away; `kinedex import` can import the files in it."
@@ -100,7 +100,7 @@ def is_database_there(database_url: str) -> bool:
     return not schema.state(database_url).is_empty
 
 
-def adopt(database_url: str, files_dir: Path) -> AdoptionReport:
+def adopt(database_url: str, files_at: FilesPlace) -> AdoptionReport:
     """Assigns the folder to the library of the database, even if it had another id.
 
     Raises LibraryMismatch if there is no database; DatabaseOutOfDate; StorageError.
@@ -110,39 +110,39 @@ def adopt(database_url: str, files_dir: Path) -> AdoptionReport:
             f"There is no library in {_database_name(database_url)} that could adopt files."
         )
     schema.check(database_url)
-    database, files = Database(database_url), FileStore(files_dir)
+    database, files = Database(database_url), open_files(files_at)
     try:
         with database.read() as tx:
             ours, needed = library.library_id(tx), references.referenced(tx)
     finally:
         database.close()
     present = set(files)
-    _write_id(files_dir, ours, replaces=True)
+    files.write_id(ours, replaces=True)
     return AdoptionReport(len(needed & present), len(needed - present), len(present - needed))
 
 
-def _checked(database_url: str, files_dir: Path, *, writes: bool) -> str:
-    database, files = Database(database_url), FileStore(files_dir)
+def _checked(database_url: str, files_at: FilesPlace, *, writes: bool) -> str:
+    database, files = Database(database_url), open_files(files_at)
     try:
         with database.read() as tx:
             ours = library.library_id(tx)
-            if _read_id(files_dir) is None:
+            if files.read_id() is None:
                 _refuse_foreign_files(tx, files, database_url)
                 if writes:
-                    _write_id(files_dir, ours)
+                    files.write_id(ours)
     finally:
         database.close()
-    _refuse_other_library(ours, database_url, files_dir)
+    _refuse_other_library(ours, database_url, files)
     return ours
 
 
-def _refuse_other_library(ours: str | None, database_url: str, files_dir: Path) -> None:
-    theirs = _read_id(files_dir)
+def _refuse_other_library(ours: str | None, database_url: str, files: FileStore) -> None:
+    theirs = files.read_id()
     if theirs is None or theirs == ours:
         return
     raise LibraryMismatch(
         f"{_database_name(database_url)} is the database of the library {ours or 'without an id'}, "
-        f"but {files_dir} is the folder of files of the library {theirs}. {WHAT_TO_DO}"
+        f"but {files.name} holds the files of the library {theirs}. {WHAT_TO_DO}"
     )
 
 
@@ -159,7 +159,7 @@ def _refuse_foreign_files(tx: Tx, files: FileStore, database_url: str) -> None:
     if present and 2 * present >= len(needed):
         return
     raise LibraryMismatch(
-        f"{_database_name(database_url)} names {len(needed)} files. The folder {files.root} holds "
+        f"{_database_name(database_url)} names {len(needed)} files, and {files.name} holds "
         f"{present} of them{' and other files' if has_files else ''}. {WHAT_TO_DO}"
     )
 
@@ -167,17 +167,3 @@ def _refuse_foreign_files(tx: Tx, files: FileStore, database_url: str) -> None:
 def _database_name(database_url: str) -> str:
     file = database_file(database_url)
     return "the database of KINEDEX_DATABASE_URL" if file is None else str(file.path)
-
-
-def _read_id(files_dir: Path) -> str | None:
-    try:
-        return read_id(files_dir)
-    except OSError as error:
-        raise StorageError(f"The folder {files_dir} cannot be read: {error.strerror}") from error
-
-
-def _write_id(files_dir: Path, library_id: str, *, replaces: bool = False) -> None:
-    try:
-        write_id(files_dir, library_id, replaces=replaces)
-    except OSError as error:
-        raise StorageError(f"The folder {files_dir} cannot be written: {error.strerror}") from error

@@ -6,14 +6,16 @@ import logging
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Self, TypeVar
 
 from app.errors import DiskFull, StorageError
 from app.store import audit, keyed_calls
 from app.store.database.access import ServerOptions
+from app.store.database.advisory_hold import AdvisoryHold
 from app.store.database.engine import ERASE_WAIT_S, Database, Tx
+from app.store.files.bucket import Bucket, FilesPlace
 from app.store.files.files import FileStore
+from app.store.files.places import open_files
 from app.store.files.reserve import Reserve
 from app.store.jobs import removals
 
@@ -32,19 +34,22 @@ class Store:
     def open(
         cls,
         database_url: str,
-        files_dir: Path,
+        files_at: FilesPlace,
         library_id: str | None = None,
         options: ServerOptions | None = None,
     ) -> Self:
         """Opens a store without a check; call `identity.prepare` or `identity.check` before.
 
-        library_id: the id that they returned. With None, nothing checks later that the folder of
-        files is the right one.
+        library_id: the id that they returned. With None, nothing checks later that the place of
+        the files is the right one. Raises ConfigurationError.
         """
         database = Database(database_url, options=options)
         if library_id is not None:
             database.watch_file()
-        return cls(database, FileStore(files_dir, library_id))
+        files = open_files(files_at, library_id)
+        if isinstance(files_at, Bucket) and not database.is_sqlite:
+            files.removal_hold = AdvisoryHold(database)
+        return cls(database, files)
 
     def read(self) -> AbstractContextManager[Tx]:
         """A transaction that reads one snapshot of the database."""

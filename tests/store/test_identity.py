@@ -128,7 +128,7 @@ def test_a_database_without_its_files_is_refused(folder: Path, how: str) -> None
     (folder / "files").rename(folder / "away")
     if how == "empty":
         (folder / "files").mkdir()
-    with pytest.raises(LibraryMismatch, match=r"names 3 files\. The folder .* holds 0 of them"):
+    with pytest.raises(LibraryMismatch, match=r"names 3 files, and the folder .* holds 0 of them"):
         open_library(folder)
     assert not (folder / "files" / NAME).exists()
 

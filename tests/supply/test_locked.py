@@ -57,7 +57,7 @@ def test_every_package_of_the_build_has_hashes_and_the_version_of_the_constraint
 
 def test_all_dependencies_of_the_image_are_locked() -> None:
     named = [*PROJECT["dependencies"]]
-    for extra in ("audio", "plots", "postgres", "words"):
+    for extra in ("audio", "plots", "postgres", "s3", "words"):
         named += PROJECT["optional-dependencies"][extra]
     needed = {re.sub(r"[-_.]+", "-", re.split(r"[^\w.-]", one)[0]).lower() for one in named}
     assert needed <= _locked("requirements.txt").keys()

@@ -81,12 +81,12 @@ def _check_library(settings: Settings, care: Care) -> Iterator[Finding]:
 
     try:
         if not identity.is_database_there(settings.database):
-            identity.refuse_files_without_database(settings.database, settings.files_dir)
+            identity.refuse_files_without_database(settings.database, settings.files_place)
             yield note("database", "there is no library yet", "`kinedex serve` makes one.")
             return
         schema.check(settings.database)
-        library_id = identity.check(settings.database, settings.files_dir)
-        store = Store.open(settings.database, settings.files_dir, library_id)
+        library_id = identity.check(settings.database, settings.files_place)
+        store = Store.open(settings.database, settings.files_place, library_id)
     except KinedexError as failure:
         yield problem("database", failure.detail, _advice_for(failure))
         return

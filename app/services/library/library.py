@@ -74,7 +74,7 @@ class Library:
         LibraryMismatch if the files and the database belong to different libraries.
         """
         identify = identity.prepare if prepare else identity.check
-        library_id = identify(settings.database, settings.files_dir)
+        library_id = identify(settings.database, settings.files_place)
         warn_if_open(settings.data_dir)
         cache = ArrayCache(ARRAY_CACHE_BYTES)
         # A clip that changed has new arrays: the index notices it first, and the cache must follow.
@@ -82,7 +82,7 @@ class Library:
         options = ServerOptions(
             settings.database_connections, settings.database_statement_timeout_s
         )
-        store = Store.open(settings.database, settings.files_dir, library_id, options)
+        store = Store.open(settings.database, settings.files_place, library_id, options)
         return cls(
             settings=settings,
             store=store,

@@ -12,7 +12,7 @@ def fit_in_child(settings: Settings) -> dict[str, Any]:
     from app.services.training.fit import fit_library
     from app.store.store import Store
 
-    store = Store.open(settings.database, settings.files_dir)
+    store = Store.open(settings.database, settings.files_place)
     try:
         return fit_library(store, wordnet=settings.wordnet, persons=settings.recognize_persons)
     finally:

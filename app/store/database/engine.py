@@ -283,7 +283,7 @@ def _to_json(value: object) -> str:
     # JSON has no NaN: other programs could not read such a column.
     text = json.dumps(value, allow_nan=False, ensure_ascii=False)
     if _NUL in text:
-        text = json.dumps(_without_nul(value), allow_nan=False, ensure_ascii=False)
+        text = json.dumps(without_nul(value), allow_nan=False, ensure_ascii=False)
     return text
 
 
@@ -291,7 +291,7 @@ _NUL = "\\u0000"
 """A NUL as JSON writes it; also a backslash before the letters `u0000`, which stays as it is."""
 
 
-def _without_nul(value: object) -> object:
+def without_nul(value: Any) -> Any:
     """The value with U+FFFD for each NUL: PostgreSQL cannot read a text that has one.
 
     Only what a file says can hold a NUL, such as the name of a joint: texts of clients are refused.
@@ -299,5 +299,5 @@ def _without_nul(value: object) -> object:
     if isinstance(value, str):
         return value.replace("\0", "\N{REPLACEMENT CHARACTER}")
     if isinstance(value, dict):
-        return {_without_nul(key): _without_nul(item) for key, item in value.items()}
-    return [_without_nul(item) for item in value] if isinstance(value, list | tuple) else value
+        return {without_nul(key): without_nul(item) for key, item in value.items()}
+    return [without_nul(item) for item in value] if isinstance(value, list | tuple) else value

@@ -1,4 +1,4 @@
-"""The quarantine: a folder for stored files that the database does not name.
+"""The quarantine: a place for stored files that the database does not name.
 
 A crash left such files, or the database is an old copy. So they are not removed at once. They stay
 here, named by their SHA-256, until the retention is over, and go back if the database names them.
@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol
 
 from app.store.folders import make_private_synced
 
@@ -38,11 +39,35 @@ class QuarantineContent:
     oldest: float | None
 
 
-class Quarantine:
+class Quarantine(Protocol):
+    """What a sweep and a verification need of a quarantine."""
+
+    name: str
+    """What messages call it."""
+
+    def __iter__(self) -> Iterator[str]:
+        """The SHA-256 of every file here."""
+        ...
+
+    def purge(self, older_than_s: float) -> tuple[str, ...]:
+        """Removes files that have been here for more than `older_than_s` seconds.
+
+        Returns their names. Call it at least every MAX_PURGE_GAP_S, because more time does not
+        count. Raises OSError, StorageError.
+        """
+        ...
+
+    def content(self) -> QuarantineContent:
+        """The names, the size and the age of all files here."""
+        ...
+
+
+class FolderQuarantine:
     """A folder of files by SHA-256. The modification time of a file is when it came here."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self.name = str(folder)
 
     def __iter__(self) -> Iterator[str]:
         """The SHA-256 of every file here."""
@@ -74,11 +99,7 @@ class Quarantine:
         (self.folder / sha256).unlink(missing_ok=True)
 
     def purge(self, older_than_s: float) -> tuple[str, ...]:
-        """Removes files that have been here for more than `older_than_s` seconds.
-
-        Returns their names. Call it at least every MAX_PURGE_GAP_S, because more time does not
-        count. Raises OSError.
-        """
+        """As `Quarantine.purge`. Raises OSError."""
         if not self.folder.is_dir():
             return ()
         now = time.time()

@@ -30,10 +30,11 @@ from app.errors import BadField, DatabaseDamaged, DiskFull, FileDamaged, NotFoun
 from app.kinedex_error import Place
 from app.store.clips import versions as library
 from app.store.database.engine import Database
-from app.store.files.files import NO_SPACE, FileStore
+from app.store.files.files import FileStore
 from app.store.files.hash_check import refuse_damage
-from app.store.files.id_file import write_id
+from app.store.files.local_files import LocalFiles
 from app.store.files.locked_file import locked_folder, remove_if_abandoned
+from app.store.files.staging import NO_SPACE
 from app.store.folders import make_private_synced, sync_folder
 from app.store.jobs import references, removals
 from app.store.store import Store
@@ -132,9 +133,9 @@ def _copy(store: Store, part: Path, progress: Progress | None) -> frozenset[str]
     with store.read() as tx:
         library_id = library.library_id_if_any(tx)
     make_private_synced(part / FILES)
+    files = _Files(store.files, LocalFiles(part / FILES))
     if library_id is not None:
-        write_id(part / FILES, library_id)
-    files = _Files(store.files, FileStore(part / FILES))
+        files.target.write_id(library_id)
     with store.files.removal_hold.held():
         needed = _copy_database(store.database, part)
         _add(files, needed, progress)

@@ -19,7 +19,6 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from app.errors import FileDamaged, NotFound
 from app.kinedex_error import KinedexError
-from app.store.files.hash_check import HashChecker
 from app.store.jobs import references
 from app.store.store import Store
 
@@ -84,7 +83,8 @@ class FileWatch:
         """Look at what is due. Raises StorageError, OSError."""
         if time.monotonic() >= self._next_look or self._store.files.suspects or self._bad:
             self._look()
-        self._read_some()
+        if self._store.files.reads_bytes:
+            self._read_some()
 
     def _watch(self) -> None:
         pause = 0.0
@@ -101,7 +101,7 @@ class FileWatch:
         doubtful = self._bad.every | {files.suspects.pop() for _ in range(len(files.suspects))}
         if began >= self._next_look:
             needed = self._needed()
-            missing = {name for name in needed if not files.has(name)}
+            missing = set(files.missing(needed))
             took = time.monotonic() - began
             self._next_look = time.monotonic() + max(LOOK_INTERVAL_S, PAUSE_PER_WORK * took)
         else:
@@ -131,10 +131,10 @@ class FileWatch:
         damaged = set()
         for name in names:
             try:
-                HashChecker().check(self._store.files.path(name))
-            except (NotFound, FileNotFoundError):
+                self._store.files.check(name)
+            except NotFound:
                 continue  # deleted meanwhile, or found missing by the next look
-            except (FileDamaged, OSError):
+            except FileDamaged:
                 damaged.add(name)
         return frozenset(damaged)
 

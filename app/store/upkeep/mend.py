@@ -21,6 +21,7 @@ from app.store.clips.record import ClipRecord, ClipState, ClipWarning
 from app.store.database.engine import Tx
 from app.store.database.tables import clips
 from app.store.files.files import FileStore
+from app.store.files.local_files import LocalFiles
 from app.store.jobs import references
 from app.store.store import Store
 from app.store.upkeep.backup import FILES
@@ -47,7 +48,7 @@ def open_backup(path: Path) -> FileStore:
     if not (path / FILES).is_dir():
         message = f"{path} is no backup: it has no folder {FILES}"
         raise BadField(f"from: {message}", places=[Place("from", message)])
-    return FileStore(path / FILES)
+    return LocalFiles(path / FILES)
 
 
 def restore_files(store: Store, names: Iterable[str], backup: FileStore) -> tuple[str, ...]:

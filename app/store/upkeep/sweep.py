@@ -82,7 +82,7 @@ def _set_aside(store: Store, names: Collection[str]) -> list[str]:
         _warn(
             "files that the database does not name were moved to %s: a crash left them, or the "
             "database is not the newest one; they come back when it names them again",
-            store.files.quarantine.folder,
+            store.files.quarantine.name,
             names=moved,
         )
     return moved

@@ -12,7 +12,6 @@ from app.errors import BadField, DatabaseDamaged, FileDamaged, NotFound
 from app.store.clips.record import ClipState
 from app.store.database.blobs import from_blob_if_whole
 from app.store.database.tables import clip_arrays, clips, model_arrays
-from app.store.files.hash_check import HashChecker
 from app.store.files.quarantine import QuarantineContent
 from app.store.jobs import references
 from app.store.store import Store
@@ -89,14 +88,13 @@ def _hash_all(
     store: Store, names: frozenset[str], progress: Progress | None
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """The names of missing files, and of files that are damaged or cannot be read."""
-    checked = HashChecker()
     missing, damaged = [], []
     for done, sha256 in enumerate(sorted(names), 1):
         try:
-            checked.check(store.files.path(sha256))
-        except (NotFound, FileNotFoundError):
+            store.files.check(sha256)
+        except NotFound:
             missing.append(sha256)
-        except (FileDamaged, BadField, OSError):  # BadField: a name that is no SHA-256
+        except (FileDamaged, BadField):  # BadField: a name that is no SHA-256
             damaged.append(sha256)
         if progress is not None:
             progress(done, len(names))

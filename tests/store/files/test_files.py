@@ -16,11 +16,12 @@ from app.errors import BadField, DiskFull, FileDamaged, NotFound, StorageError, 
 from app.store.files import locked_file
 from app.store.files.files import FileStore
 from app.store.files.hash_check import read_whole
+from app.store.files.local_files import LocalFiles
 
 
 @pytest.fixture
 def files(tmp_path: Path) -> FileStore:
-    return FileStore(tmp_path / "files")
+    return LocalFiles(tmp_path / "files")
 
 
 def put(files: FileStore, content: bytes) -> str:
@@ -79,7 +80,7 @@ def test_a_disk_that_fails_leaves_nothing(
     def fail(_descriptor: int) -> None:
         raise OSError(code, os.strerror(code))
 
-    monkeypatch.setattr("app.store.files.files.os.fsync", fail)
+    monkeypatch.setattr("app.store.files.staging.os.fsync", fail)
     with pytest.raises(failure), files.stage(io.BytesIO(b"walk")) as staged:
         staged.keep()
     assert everything_in(files) == []
@@ -88,7 +89,7 @@ def test_a_disk_that_fails_leaves_nothing(
 def test_a_really_full_disk(tmp_path: Path) -> None:
     if not Path("/dev/full").exists():
         pytest.skip("no /dev/full here")
-    files = FileStore(tmp_path)
+    files = LocalFiles(tmp_path)
 
     class Full(io.BytesIO):
         def read(self, size: int | None = -1, /) -> bytes:
@@ -111,7 +112,7 @@ def test_content_and_directories_are_synced_before_it_counts_as_kept(
         synced.append(str(Path(f"/proc/self/fd/{descriptor}").readlink()))
         real(descriptor)
 
-    monkeypatch.setattr("app.store.files.files.os.fsync", spy)
+    monkeypatch.setattr("app.store.files.staging.os.fsync", spy)
     sha256 = put(files, b"walk")
     final = files.path(sha256)
     temporary = next(n for n, path in enumerate(synced) if "/tmp/up_" in path)
@@ -134,8 +135,8 @@ def held_by_another_process(files: FileStore) -> subprocess.Popen[str]:
     """A process in the middle of an upload; `line` of its output names the temporary."""
     code = (
         "import io, pathlib, sys\n"
-        "from app.store.files.files import FileStore\n"
-        "files = FileStore(pathlib.Path(sys.argv[1]))\n"
+        "from app.store.files.local_files import LocalFiles\n"
+        "files = LocalFiles(pathlib.Path(sys.argv[1]))\n"
         "with files.stage(io.BytesIO(b'half')) as staged:\n"
         "    print(staged.temporary, flush=True)\n"
         "    sys.stdin.read()\n"

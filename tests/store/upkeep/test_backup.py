@@ -28,7 +28,7 @@ from app.store.clips.record import ClipLabels, ClipRecord, NewClip
 from app.store.database import schema
 from app.store.database.engine import Database
 from app.store.database.tables import file_removals
-from app.store.files.files import FileStore
+from app.store.files.local_files import LocalFiles
 from app.store.jobs import outcomes, references
 from app.store.jobs import repository as jobs
 from app.store.jobs.record import JobKind, NewJob
@@ -176,7 +176,7 @@ def test_a_file_that_the_disk_cannot_read_is_named_too(
         def read(self, size: int | None = -1, /) -> bytes:
             raise OSError(errno.EIO, os.strerror(errno.EIO))
 
-    monkeypatch.setattr(FileStore, "open", lambda *_: Unreadable())
+    monkeypatch.setattr(LocalFiles, "open", lambda *_: Unreadable())
     with pytest.raises(StorageError, match="2 are damaged") as refused:
         back_up(store, tmp_path / "copy")
     assert {place.location for place in refused.value.places} == names

@@ -18,7 +18,8 @@ from app.store.clips.record import AttachedAudio, ClipLabels, ClipRecord, NewCli
 from app.store.database.engine import Tx
 from app.store.database.tables import file_removals
 from app.store.files.files import FileStore
-from app.store.files.quarantine import DAY_S, Quarantine
+from app.store.files.local_files import LocalFiles
+from app.store.files.quarantine import DAY_S, FolderQuarantine
 from app.store.jobs import imports, leases, outcomes, references
 from app.store.jobs import repository as jobs
 from app.store.jobs.imports import ImportOutcome, NewEntry
@@ -109,7 +110,7 @@ def test_a_file_that_cannot_be_removed_is_tried_again(
         raise StorageError("The file store failed: Read-only file system")
 
     with monkeypatch.context() as broken:
-        broken.setattr(FileStore, "remove", fail)
+        broken.setattr(LocalFiles, "remove", fail)
         delete(store, clip)
     assert recorded(store) == {clip.sha256}
     assert sweep(store, RETENTION_DAYS).removed == 1
@@ -229,9 +230,9 @@ def test_a_file_that_is_being_stored_is_not_set_aside(
 
 
 @pytest.fixture
-def quarantine(tmp_path: Path) -> Quarantine:
+def quarantine(tmp_path: Path) -> FolderQuarantine:
     """A quarantine with one file, which came now but was stored years ago."""
-    made = Quarantine(tmp_path / "quarantine")
+    made = FolderQuarantine(tmp_path / "quarantine")
     path = tmp_path / ("a" * 64)
     path.write_bytes(b"walk")
     os.utime(path, (1e9, 1e9))
@@ -245,7 +246,7 @@ def pass_days(monkeypatch: pytest.MonkeyPatch, days: float) -> None:
 
 
 def test_the_retention_begins_with_the_move_and_ends_what_it_holds(
-    quarantine: Quarantine, monkeypatch: pytest.MonkeyPatch
+    quarantine: FolderQuarantine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for day in range(1, 33):
         with monkeypatch.context() as later:
@@ -257,7 +258,7 @@ def test_the_retention_begins_with_the_move_and_ends_what_it_holds(
 
 @pytest.mark.parametrize("days", [20_000, -20_000])
 def test_a_clock_that_jumps_ends_no_retention(
-    quarantine: Quarantine, monkeypatch: pytest.MonkeyPatch, days: float
+    quarantine: FolderQuarantine, monkeypatch: pytest.MonkeyPatch, days: float
 ) -> None:
     assert quarantine.purge(30 * DAY_S) == ()
     with monkeypatch.context() as later:
