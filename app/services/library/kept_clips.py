@@ -19,7 +19,7 @@ from app.store.database.engine import Tx
 
 MAX_BYTES = 64 * 2**20
 """Memory of the texts; those that were not used for the longest time go first. A whole clip of the
-benches takes 1.4 kB, so that about 47,000 clips stay. Clips with more roles and labels take more."""
+benches takes 1.4 kB, so that about 47,000 clips stay; more roles and labels take more."""
 OVERHEAD = 700
 """Bytes of an entry beside its text (measured by tracemalloc on 20,000 entries: 711)."""
 
