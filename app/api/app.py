@@ -24,6 +24,7 @@ from app.api.guard.idempotency import Idempotency
 from app.api.guard.limits import BodyLimit
 from app.api.guard.methods import KnownMethods
 from app.api.guard.rates import RateLimits
+from app.api.guard.shedding import Shedding
 from app.api.guard.slow_bodies import SlowBodies
 from app.api.loading import Loading
 from app.api.metrics import install_metrics
@@ -176,6 +177,7 @@ def create_app(settings: Settings) -> FastAPI:
     app.add_middleware(BodyLimit, settings=settings)
     app.add_middleware(SlowBodies, settings=settings)
     app.add_middleware(AccessCheck)
+    app.add_middleware(Shedding)
     if settings.cors_origins:
         app.add_middleware(Cors, origins=settings.cors_origins)
     install_metrics(app)

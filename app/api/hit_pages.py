@@ -2,8 +2,9 @@
 
 A page can have a thousand hits. To copy them into models, and the models into JSON, would take
 longer than the search. So each hit becomes a dictionary by the fields of its model: their names,
-their order, and the functions that shape a value. `tests/api/test_hit_pages.py` compares the
-answers with those of the models.
+their order, and the functions that shape a value. The clips of the hits are written one by one, and
+their texts may be used again (`app.services.library.kept_clips`). `tests/api/test_hit_pages.py`
+compares the answers with those of the models.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from typing import Annotated, Any, Self
 from fastapi import Query, Response
 from pydantic import AfterValidator, BaseModel, BeforeValidator, create_model
 from pydantic.fields import FieldInfo
+from pydantic_core import to_json
 
 from app.api.schemas.base import Fields
 from app.api.schemas.clips import Clip
@@ -25,6 +27,9 @@ from app.services.find.hits import Hits
 
 ChosenFields = Annotated[Fields | None, Query()]
 CLIP, DOT = "clip", "."
+_PLACE = b'"clip":null'
+"""The place of a clip's text in a page. No other member of a page has this name and no value, and
+quotes in texts are escaped."""
 _Names = frozenset[str] | None
 """Names of the chosen members; None for all."""
 _Shape = Callable[[Any], Any]
@@ -36,11 +41,13 @@ class HitPage:
     """How a page of hits is shown.
 
     page: the model of the page, which does not look into the items; write: from a hit to a
-    dictionary; clip_fields: the attributes that a hit's clip needs.
+    dictionary, in which the clip is None; write_clip: from a hit's clip to its members;
+    clip_fields: the attributes that a hit's clip needs, none if no clip is shown.
     """
 
     page: type[BaseModel]
     write: _Shape
+    write_clip: _Shape
     clip_fields: frozenset[str]
 
     @classmethod
@@ -57,12 +64,28 @@ class HitPage:
         shell = create_model(page.__name__, __base__=page, items=(unchecked, ...))
         needed = frozenset(attribute for _, attribute, _ in _fields(Clip, _of_clip(names)))
         has_clip = names is None or any(name.partition(DOT)[0] == CLIP for name in names)
-        return cls(shell, _writer(hit, names), needed if has_clip else frozenset())
+        write_clip = _writer(Clip, _of_clip(names))
+        return cls(shell, _writer(hit, names), write_clip, needed if has_clip else frozenset())
 
     def answer(self, found: Hits) -> Response:
         """The page as JSON."""
         shown = self.page.model_validate(_Page(found, [self.write(hit) for hit in found.items]))
-        return Response(shown.model_dump_json(), media_type="application/json")
+        written = shown.model_dump_json().encode()
+        if self.clip_fields:
+            first, *rest = written.split(_PLACE)
+            texts = [self._text(hit.clip) for hit in found.items]
+            pairs = zip(texts, rest, strict=True)
+            written = b"".join([first, *(b'"clip":%b%b' % pair for pair in pairs)])
+        return Response(written, media_type="application/json")
+
+    def _text(self, clip: Any) -> bytes:
+        """A clip as JSON."""
+        if clip.text is not None:
+            return bytes(clip.text)
+        text = to_json(self.write_clip(clip))
+        if clip.keep is not None:
+            clip.keep(text)
+        return text
 
 
 class _Page:
@@ -97,7 +120,7 @@ def _writer(model: type[BaseModel], names: _Names) -> _Shape:
     """From an object with the attributes of a model to a dictionary of its chosen fields."""
     fields = _fields(model, names)
     keys, attributes = [name for name, _, _ in fields], [read for _, read, _ in fields]
-    shapes = [(name, shape) for name, _, field in fields for shape in _shapes(name, field, names)]
+    shapes = [(name, shape) for name, _, field in fields for shape in _shapes(name, field)]
     read = _values_of(model, attributes)
 
     def write(value: Any) -> dict[str, Any]:
@@ -119,10 +142,14 @@ def _values_of(model: type[BaseModel], attributes: list[str]) -> Callable[[Any],
     return attrgetter(*attributes)
 
 
-def _shapes(name: str, field: FieldInfo, names: _Names) -> list[_Shape]:
+def _no_clip(_: Any) -> None:
+    return None
+
+
+def _shapes(name: str, field: FieldInfo) -> list[_Shape]:
     """The functions that shape the value of a field, one after the other."""
     if field.annotation is Clip:
-        return [_writer(Clip, _of_clip(names))]
+        return [_no_clip]  # its place
     inner = getattr(field.annotation, "__args__", (None,))[0]
     if isinstance(inner, type) and issubclass(inner, BaseModel):
         write = _writer(inner, None)

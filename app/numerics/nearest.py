@@ -33,9 +33,9 @@ GATHER_RATIO = 16
 """If a mask selects less than one vector in this many, only the selected vectors are copied and
 multiplied. Else all are multiplied."""
 
-MEASURED_AT_ONCE = 64
-"""Vectors whose exact distances are computed at a time: their float64 copies stay in the cache of a
-core."""
+MEASURED_AT_ONCE = 256
+"""Vectors whose exact distances are computed at a time: their float64 copies (256 kB) stay in the
+cache of a core."""
 
 _ROUNDING = 10.0**-DECIMALS
 _MAX_SPARE_ROWS = 4096
@@ -130,13 +130,17 @@ def distances_to(blocks: Sequence[Block], rows: IntArray, query: FloatArray) -> 
     """
     exact = np.asarray(query, dtype=np.float32).astype(np.float64)
     distances = np.empty(len(rows))
+    # One buffer for all: numpy casts faster in a copy than in a subtraction.
+    buffer = np.empty((min(len(rows), MEASURED_AT_ONCE), len(exact)))
     first = start = 0
     for block in blocks:
         stop = start + int(np.searchsorted(rows[start:], first + len(block)))
         own = rows[start:stop] - first
         for begin in range(0, len(own), MEASURED_AT_ONCE):
             some = own[begin : begin + MEASURED_AT_ONCE]
-            apart = block.vectors.take(some, axis=0) - exact
+            apart = buffer[: len(some)]
+            apart[...] = block.vectors.take(some, axis=0)
+            apart -= exact
             np.vecdot(apart, apart, out=distances[start + begin : start + begin + len(some)])
         first, start = first + len(block), stop
     np.sqrt(distances, out=distances)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from datetime import UTC, datetime
 from typing import Any
@@ -93,15 +94,14 @@ def test_chosen_fields_are_those_of_the_whole_page(page: type[BaseModel], hits: 
         }
         for hit in whole["items"]
     ]
-    found = page.model_validate_json(chosen.answer(replace(hits, items=())).body)
-    assert found.model_dump(mode="json") == whole | {"items": []}
-    assert [chosen.write(hit) for hit in hits.items] == expected
+    assert json.loads(chosen.answer(hits).body) == whole | {"items": expected[: len(hits.items)]}
 
 
 def test_a_page_without_clips_needs_no_field_of_them() -> None:
     page = HitPage.of(MotionHits, ["rank"])
     assert page.clip_fields == frozenset()
-    assert page.write(_hits().items[1]) == {"rank": 2}
+    items = json.loads(page.answer(_hits()).body)["items"]
+    assert items == [{"rank": 1}, {"rank": 2}]
 
 
 def test_all_fields_of_a_clip_can_be_read_from_the_store() -> None:

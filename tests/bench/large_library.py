@@ -1,7 +1,8 @@
 """Libraries of many clips: copies of real clips with noise on their vectors, written into a store.
 
-We do not have a hundred thousand recordings, and a search does not need them. The other arrays of a
-copy (features, volumes, poses) are those of its real clip, so its length is realistic.
+We do not have a hundred thousand recordings, and a search does not need them. The limbs of a copy
+are moved, so that no two copies have the same poses. The other arrays of a copy (features, volumes)
+are those of its real clip, so its length is realistic.
 """
 
 from __future__ import annotations
@@ -26,9 +27,11 @@ from app.store.database import tables as t
 from app.store.database.blobs import to_blob
 from app.store.database.ids import utc_now
 from app.store.store import Store
+from tests.bench.moved_limbs import Limbs
 from tests.real_clips import manifest, real_clips
 
 VECTOR = "motion_vector"
+POSITIONS, COVER = "role_positions", "pose_cover"
 SPREAD = 0.03
 """Deviation of the noise on each number of a vector: a third of the median distance to the nearest
 neighbor."""
@@ -49,12 +52,17 @@ class Sample:
 
     @functools.cached_property
     def blobs(self) -> list[dict[str, Any]]:
-        """Rows of the table of arrays, without the vector and without the clip's id."""
+        """Rows of the table of arrays that all copies share, without the clip's id."""
         return [
             {"name": name, "version": ANALYSIS_VERSION, **to_blob(array)}
             for name, array in self.arrays.items()
-            if name != VECTOR and name not in NOT_SEARCHED
+            if name not in (VECTOR, POSITIONS, COVER, *NOT_SEARCHED)
         ]
+
+    @functools.cached_property
+    def limbs(self) -> Limbs:
+        """Makes the poses of copies."""
+        return Limbs.of(self.arrays[POSITIONS], self.arrays[COVER])
 
 
 @functools.lru_cache(maxsize=1)
@@ -113,13 +121,13 @@ def fill(
 
     names: the arrays to write; default: all arrays that searches read. real: as of `many_clips`.
     """
-    clips = enumerate(many_clips(count, real=real), 1)
+    clips, rng = enumerate(many_clips(count, real=real), 1), np.random.default_rng(count)
     while batch := list(itertools.islice(clips, AT_ONCE)):
         with store.write() as tx:
             tx.execute(insert(t.clips), [clip_row(number, made) for number, (_, made) in batch])
             tx.execute(insert(t.clip_words), list(_word_rows(made for _, (_, made) in batch)))
-            rows = [row for _, (sample, made) in batch for row in _array_rows(sample, made, names)]
-            tx.execute(insert(t.clip_arrays), rows)
+            rows = (_array_rows(sample, made, names, rng) for _, (sample, made) in batch)
+            tx.execute(insert(t.clip_arrays), list(itertools.chain.from_iterable(rows)))
             tx.execute(update(t.library).values(version=batch[-1][0]))
 
 
@@ -159,10 +167,16 @@ def _word_rows(clips: Iterator[IndexedClip]) -> Iterator[dict[str, Any]]:
 
 
 def _array_rows(
-    sample: Sample, clip: IndexedClip, names: Sequence[str] | None
+    sample: Sample, clip: IndexedClip, names: Sequence[str] | None, rng: np.random.Generator
 ) -> Iterator[dict[str, Any]]:
     assert clip.array is not None
-    yield {"clip_id": clip.id, "name": VECTOR, "version": ANALYSIS_VERSION, **to_blob(clip.array)}
+    own = {VECTOR: clip.array}
+    if names is None or POSITIONS in names or COVER in names:
+        own[POSITIONS], own[COVER] = sample.limbs.moved(rng)
+    for name, array in own.items():
+        if name == VECTOR or names is None or name in names:
+            row = {"clip_id": clip.id, "name": name, "version": ANALYSIS_VERSION}
+            yield row | to_blob(array)
     for blob in sample.blobs:
         if names is None or blob["name"] in names:
             yield {"clip_id": clip.id, **blob}

@@ -4,13 +4,14 @@ Run: pytest -m bench -s tests/bench/test_index.py
 Real motion vectors with noise, for 10,000, 100,000 and a million clips. A search has all steps:
 filter, product, exact distances, and the sorted page. Passes alternate with searches, so that both
 have the same caches. Target (issue 4): at most three passes. The test asserts CPU time. Wall-clock
-times are only printed.
+times are only printed. BENCH_CLIPS=10000,100000 chooses other numbers of clips.
 """
 
 from __future__ import annotations
 
 import gc
 import itertools
+import os
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -31,15 +32,18 @@ from app.store.store import Store
 from tests.bench.large_library import fill, many_clips
 from tests.bench.page import Section
 
+ROUNDS = {10_000: 400, 100_000: 60, 1_000_000: 15}
+COUNTS = [int(n) for n in os.environ.get("BENCH_CLIPS", "10000,100000,1000000").split(",")]
+
 FIGURES = Section(
     "index",
     "The index compared with one BLAS pass",
-    trials="searches and passes in turns, at 10 thousand, 100 thousand and a million clips",
+    trials="searches and passes in turns, "
+    + ", ".join(f"{ROUNDS[count]} of each at {count:,} clips" for count in COUNTS),
 )
 
 pytestmark = pytest.mark.bench
 
-ROUNDS = {10_000: 400, 100_000: 60, 1_000_000: 15}
 FILTERS = {
     "no filter": ClipFilter(),
     "half, by 25 persons": ClipFilter(person=tuple(f"person {i}" for i in range(25))),
@@ -49,7 +53,7 @@ FILTERS = {
 MAX_PASSES = 3.0
 
 
-@pytest.fixture(scope="module", params=list(ROUNDS))
+@pytest.fixture(scope="module", params=COUNTS)
 def rows(request: pytest.FixtureRequest) -> Iterator[RowsView]:
     made = Rows(MOTION_VECTORS)
     before = _resident()

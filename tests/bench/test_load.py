@@ -29,7 +29,7 @@ from app.config import Settings
 from app.demo import demo_clips
 from app.store import identity
 from app.store.store import Store
-from tests.bench.driver import Outcome, Request, drive
+from tests.bench.driver import Outcome, Request, drive, flood
 from tests.bench.large_library import fill
 from tests.bench.page import Section
 from tests.bench.processes import MB, processes_over
@@ -152,7 +152,7 @@ def test_while_models_are_fitted(live: Live) -> None:
 
 
 def test_too_many_are_refused_at_once_and_the_service_recovers(live: Live) -> None:
-    outcome = drive(live.url, requests(("fused", "pose")), 200, 10.0)
+    outcome = flood(live.url, requests(("fused", "pose")), 200, 10.0)
     _is_whole(live, outcome)
     after = drive(live.url, requests(("fused",)), 1, 3.0)
     refused = np.percentile(outcome.refusals, [50, 95]) if outcome.refusals else [np.nan] * 2

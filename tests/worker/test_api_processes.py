@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
@@ -119,6 +120,43 @@ def test_a_new_clip_is_found_by_all_at_once(live: Live) -> None:
         return client.post("/v1/search/motion", json=asked).json()["items"][0]["clip"]["id"]
 
     assert set(_everywhere(live, first)) == {created["clip"]["id"]}
+
+
+def test_a_changed_clip_is_shown_by_all_at_once(live: Live) -> None:
+    with live.client() as client:
+        clip = client.get("/v1/clips", params={"limit": 1}).json()["items"][0]["id"]
+    asked = {"clip_id": clip, "include_self": True, "limit": 1}
+
+    def name(client: httpx2.Client) -> object:
+        return client.post("/v1/search/motion", json=asked).json()["items"][0]["clip"]["name"]
+
+    for changed in ("one name", "another name"):
+        with live.client() as client:
+            client.patch(f"/v1/clips/{clip}", json={"name": changed})
+        assert set(_everywhere(live, name)) == {changed}
+
+
+def test_events_of_a_fit_and_its_models_reach_all(live: Live) -> None:
+    with live.client() as client:
+        job = client.post("/v1/models/fit").json()["job"]["id"]
+
+    def last_event(client: httpx2.Client) -> object:
+        lines = client.get(f"/v1/jobs/{job}/events").text.splitlines()
+        data = [line.removeprefix("data: ") for line in lines if line.startswith("data: ")]
+        return json.loads(data[-1])["state"]
+
+    assert set(_everywhere(live, last_event)) == {"succeeded"}
+
+    def models(client: httpx2.Client) -> object:
+        return tuple(sorted(model["id"] for model in client.get("/v1/models").json()["items"]))
+
+    def recognized(client: httpx2.Client) -> object:
+        clip = client.get("/v1/clips", params={"limit": 1}).json()["items"][0]["id"]
+        return client.post("/v1/recognize", json={"clip_id": clip}).status_code
+
+    (found,) = set(_everywhere(live, models))
+    assert found
+    assert len(set(_everywhere(live, recognized))) == 1
 
 
 def test_cursors_and_keys_of_calls_hold_everywhere(live: Live) -> None:

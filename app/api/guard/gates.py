@@ -94,6 +94,15 @@ class Gate:
         """Number of calls that wait."""
         return len(self._turns)
 
+    @property
+    def is_full(self) -> bool:
+        """Whether a call that comes now is refused."""
+        return len(self._turns) >= self._room and not (self._free and not self._turns)
+
+    def refusal(self) -> TooBusy:
+        """The failure of a call that is refused."""
+        return TooBusy(f"Too many {self.name} calls are waiting; try again shortly.")
+
     async def enter(
         self, deadline: Deadline, left: asyncio.Future[None], *, again: bool = False
     ) -> None:
@@ -104,8 +113,8 @@ class Gate:
         if self._free and not self._turns:
             self._free -= 1
             return
-        if len(self._turns) >= self._room and not again:
-            raise TooBusy(f"Too many {self.name} calls are waiting; try again shortly.")
+        if self.is_full and not again:
+            raise self.refusal()
         turn = asyncio.get_running_loop().create_future()
         self._turns.append(turn)
         try:

@@ -16,7 +16,7 @@ import numpy as np
 from app.analysis.descriptors.pose_cover import POSE_WIDTH, pose_vectors
 from app.deadline import check
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
-from app.numerics.nearest import squared_distances
+from app.numerics.nearest import DECIMALS, squared_distances
 from app.search.example.distances import Loader
 from app.search.index.rows import Layout, RowsView
 from app.search.pose.pose_matches import MatchesPerClip, PoseMatch, pose_matches
@@ -93,7 +93,8 @@ class PoseRanking:
         for numbers in self._batches():
             if len(hits) > limit and not self._may_precede(int(numbers[0]), hits[-1]):
                 break
-            hits += [hit for hit in self._hits_in(numbers) if hit.key > last_seen]
+            farthest = hits[-1].match.distance if len(hits) > limit else np.inf
+            hits += [hit for hit in self._hits_in(numbers, farthest) if hit.key > last_seen]
             # one hit more than the page, so that the page knows whether others follow
             hits = sorted(hits, key=lambda hit: hit.key)[: limit + 1]
         return PosePage(tuple(hits[:limit]), len(hits) > limit)
@@ -124,19 +125,24 @@ class PoseRanking:
             yield near[np.lexsort((self._ids[near].astype(str), bounds[is_near]))]
             numbers, count = numbers[~is_near], 4 * count
 
-    def _hits_in(self, numbers: IntArray) -> list[PoseHit]:
-        """The hits in the clips with these numbers; deleted clips have none."""
+    def _hits_in(self, numbers: IntArray, max_distance: float) -> list[PoseHit]:
+        """The hits in the clips with these numbers that have one within `max_distance`.
+
+        Deleted clips have none.
+        """
         clip_ids = [str(clip_id) for clip_id in self._ids[numbers]]
         loaded = self._load(clip_ids, POSITIONS)
         there = [clip_id for clip_id in clip_ids if clip_id in loaded]
         if not there:
             return []
-        ends = np.cumsum([len(loaded[clip_id]) for clip_id in there])
+        starts = np.cumsum([0, *(len(loaded[clip_id]) for clip_id in there)])
         distances = self._distances(np.concatenate([loaded[i] for i in there]))
+        nearest = np.round(np.minimum.reduceat(distances, starts[:-1]), DECIMALS)
+        # Most clips are too far, and to find their matches would take longer than this look.
         return [
-            PoseHit(clip_id, match)
-            for clip_id, own in zip(there, np.split(distances, ends[:-1]), strict=True)
-            for match in pose_matches(own, self._per_clip)
+            PoseHit(there[i], match)
+            for i in np.flatnonzero(nearest <= max_distance).tolist()
+            for match in pose_matches(distances[starts[i] : starts[i + 1]], self._per_clip)
         ]
 
     def _distances(self, positions: FloatArray) -> FloatArray:

@@ -9,7 +9,6 @@ from app.search.ranking import cursor as cursors
 from app.search.ranking.cursor import Anchor, Position
 from app.services.find.hits import Hit, HitPage
 from app.services.library.library import Library
-from app.store.clips import partial
 from app.store.clips import repository as stored
 from app.store.clips.partial import PartialClip
 from app.store.clips.record import ClipRecord
@@ -93,7 +92,7 @@ class Paging:
             page = page.within(self.max_distance)
         before = self.after.rank if self.after else 0
         with lib.store.read() as tx:
-            clips = self._clips(tx, {match.clip_id: None for match in page.matches})
+            clips = self._clips(lib, tx, {match.clip_id: None for match in page.matches})
         items = tuple(
             _hit(rank, match, clip, to_score(match.distance))
             for rank, match in enumerate(page.matches, before + 1)
@@ -106,10 +105,12 @@ class Paging:
         position = Position(rank, last.distance, last.key, page.anchor, page.scales)
         return HitPage(items, cursors.encode(position, self.question))
 
-    def _clips(self, tx: Tx, ids: Collection[str]) -> Mapping[str, ClipRecord | PartialClip]:
+    def _clips(
+        self, lib: Library, tx: Tx, ids: Collection[str]
+    ) -> Mapping[str, ClipRecord | PartialClip]:
         if self.clip_fields is None:
             return stored.get_many(tx, ids)
-        return partial.read(tx, ids, {"duration", *self.clip_fields})
+        return lib.kept_clips.read(tx, ids, self.clip_fields)
 
 
 def _hit(rank: int, match: Match, clip: ClipRecord | PartialClip, score: float) -> Hit:

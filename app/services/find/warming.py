@@ -64,7 +64,8 @@ class Warmth:
     def follow(self) -> None:
         """Load what has changed since. Raises StorageError."""
         lib = self._lib
-        for index in (lib.index, lib.paced, lib.segments, lib.poses, *lib.windows.values()):
+        others = (lib.paced, lib.segments, lib.poses, lib.word_windows, *lib.windows.values())
+        for index in (lib.index, *others):
             if index.is_loaded:
                 index.catch_up(lib.store)
         now = self._current_models()
@@ -99,7 +100,8 @@ class Warmth:
         yield partial(find.find_motion, lib, MotionQuery(clip, scope="segments"))
         if len(alive) <= MAX_CLIPS:
             yield partial(find.find_motion, lib, MotionQuery(clip, scope="windows"))
-            for index in lib.windows.values():  # a search reads only those as long as its query
+            # A search reads only those that are as long as its query.
+            for index in (*lib.windows.values(), lib.word_windows):
                 yield partial(index.catch_up, lib.store)
 
     def _of_models(self) -> Iterator[Callable[[], object]]:

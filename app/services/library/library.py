@@ -20,6 +20,7 @@ from app.search.windows.part_scores import PartScores
 from app.search.windows.parts import parts_layout
 from app.services.library.analysis_pool import AnalysisPool, Limits
 from app.services.library.fitted_models import METRICS, FittedModels, ModelKind
+from app.services.library.kept_clips import KeptClips
 from app.services.library.kept_tree import KeptTree
 from app.store import identity
 from app.store.database.access import ServerOptions
@@ -43,7 +44,7 @@ class Library:
     of all clips; word_windows: the windows in which words are looked for, and window_words: their
     probabilities; moments: their moments, for near-duplicates; the first search that needs paced or
     one of these five loads it. metrics: the clips' coordinates in each learned metric. tree: of the
-    labels.
+    labels. kept_clips: the JSON of clips that searches showed.
     """
 
     settings: Settings
@@ -65,6 +66,7 @@ class Library:
     moments: VectorIndex
     metrics: Mapping[ModelKind, ProjectedIndex]
     tree: KeptTree
+    kept_clips: KeptClips
 
     @classmethod
     def open(cls, settings: Settings, *, prepare: bool = True) -> Self:
@@ -110,6 +112,7 @@ class Library:
             moments=VectorIndex(layout=MOMENTS),
             metrics={kind: ProjectedIndex(index) for kind in METRICS},
             tree=KeptTree(),
+            kept_clips=KeptClips(),
         )
 
     def close(self) -> None:

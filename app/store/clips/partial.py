@@ -16,7 +16,7 @@ from sqlalchemy import ColumnElement, Select, Text, cast, select
 
 from app.store.clips import clip_captions, clip_metadata, visibility
 from app.store.clips.measures import MEASURES
-from app.store.clips.record import ClipWarning
+from app.store.clips.record import ClipState, ClipWarning
 from app.store.clips.repository import words_of
 from app.store.clips.rows import origin_of
 from app.store.database.engine import Tx
@@ -36,6 +36,15 @@ AUDIO = frozenset({"has_audio", "audio_begins_at"})
 _AUDIO_COLUMNS = ("audio_sha256", "audio_offset", "audio_offset_override")
 ORIGIN = "origin"
 _ORIGIN_COLUMNS = ("origin_clip_id", "origin_steps", "origin_deleted")
+
+ShownState = tuple[int, str | None, bool, str | None]
+"""What of a ready clip is different whenever one of FIELDS is: the library version of the last
+change, and the fields that change without a new version (the state of a new analysis, whether the
+original was deleted, the text of the warnings)."""
+_STATES = select(
+    *(clips.c.id, clips.c.state, clips.c.changed_version, clips.c.reanalysis),
+    *(clips.c.origin_deleted, cast(clips.c.warnings, Text)),
+).where(is_one_of(clips.c.id, "ids"))
 
 CACHED_TEXTS = 4096
 """Number of different JSON texts that are kept parsed."""
@@ -82,13 +91,17 @@ FIELDS = PLAIN | AUDIO | {ORIGIN} | _PARSERS.keys() | _OF_MANY.keys()
 class PartialClip:
     """A clip with some of the fields of `ClipRecord`. Other attributes raise AttributeError.
 
-    values: the fields by name. Clips share the values of equal JSON: do not change them.
+    values: the fields by name. Clips share the values of equal JSON: do not change them. text: the
+    clip as JSON, if it was written before; then the values are missing. keep: is given the JSON
+    when it is written, if it may be used again.
     """
 
-    __slots__ = ("values",)
+    __slots__ = ("keep", "text", "values")
 
-    def __init__(self, values: Mapping[str, Any]) -> None:
+    def __init__(self, values: Mapping[str, Any], text: bytes | None = None) -> None:
         self.values = values
+        self.text = text
+        self.keep: Callable[[bytes], None] | None = None
 
     def __getattr__(self, name: str) -> Any:
         try:
@@ -121,6 +134,17 @@ def read(tx: Tx, clip_ids: Collection[str], names: Collection[str]) -> dict[str,
             for clip_id, values in found.items():
                 values[name] = by_id.get(clip_id, empty)
     return {clip_id: PartialClip(values) for clip_id, values in found.items()}
+
+
+def shown_states(tx: Tx, clip_ids: Collection[str]) -> dict[str, ShownState]:
+    """The states of the ready clips that exist among `clip_ids`, by id."""
+    rows = tx.execute(visibility.of_visible(_STATES), {"ids": as_list(clip_ids)})
+    ready = ClipState.READY.value
+    return {
+        clip_id: (version, reanalysis, is_deleted, warnings)
+        for clip_id, state, version, reanalysis, is_deleted, warnings in rows.all()
+        if state == ready
+    }
 
 
 @lru_cache(64)
