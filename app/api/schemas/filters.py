@@ -57,7 +57,7 @@ Where = Annotated[
     WithJsonSchema(
         {
             "anyOf": [
-                {"type": "object", "additionalProperties": True},
+                {"type": "object", "additionalProperties": True, "maxProperties": 100},
                 {"type": "string", "maxLength": 20_000},
             ]
         }
