@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import Any
 
-from app.services.find.by_pose import PoseQuery
-from app.services.find.queries import MotionQuery
+from app.services.find.queries import MotionQuery, PoseQuery
 from app.services.find.query_source import QuerySource
 
 _OF_SOURCE = {field.name for field in fields(QuerySource)}

@@ -35,6 +35,7 @@ from app.api.routes import (
     clip_views,
     clips,
     collections,
+    composed_search,
     curation,
     edits,
     evaluations,
@@ -46,6 +47,7 @@ from app.api.routes import (
     label_tree,
     labels,
     low_dimensional,
+    manifests,
     measures,
     models,
     poses,
@@ -68,6 +70,7 @@ from app.api.schemas.pose import PoseSearch
 from app.api.schemas.recognition import Recognize
 from app.api.schemas.search import MotionSearch
 from app.api.schemas.synthesis import Synthesize
+from app.api.schemas.why import WhySearch
 from app.api.validators import install_validators
 from app.api.web_pages import install_pages
 from app.config import Settings
@@ -115,6 +118,7 @@ ROUTES = (
     imports,
     jobs,
     search,
+    composed_search,
     searches,
     collections,
     poses,
@@ -123,6 +127,7 @@ ROUTES = (
     models,
     evaluations,
     labels,
+    manifests,
     label_tree,
     measures,
     curation,
@@ -169,7 +174,7 @@ def create_app(settings: Settings) -> FastAPI:
     install_pages(app)
     describe(
         app,
-        [ComposedSearch, MotionSearch, PoseSearch, Recognize, Synthesize],
+        [ComposedSearch, MotionSearch, PoseSearch, Recognize, Synthesize, WhySearch],
         lambda: example_values(app.state.library),
     )
     # The last one added is the outermost.

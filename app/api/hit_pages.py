@@ -155,7 +155,7 @@ def _shapes(name: str, field: FieldInfo) -> list[_Shape]:
         write = _writer(inner, None)
         if name == "parts":
             return [lambda items: [write(item) for item in items]]
-        if name == "origin":
-            return [lambda origin: None if origin is None else write(origin)]
+        if name in ("origin", "group"):
+            return [lambda one: None if one is None else write(one)]
     steps = (BeforeValidator, AfterValidator)
     return [one.func for one in field.metadata if isinstance(one, steps)]  # type: ignore[misc]

@@ -37,6 +37,11 @@ COMMANDS = {
         "search",
         "Find motions that are similar to a file or a stored clip, or motions for words.",
     ),
+    "query": CommandEntry(
+        "app.cli.query",
+        "query",
+        "Find motions by several parts together, or say why a clip is a hit of them.",
+    ),
     "search-pose": CommandEntry(
         "app.cli.find_pose",
         "search_pose",

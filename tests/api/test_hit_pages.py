@@ -15,7 +15,8 @@ from app.api.schemas.composed_search import ComposedHits
 from app.api.schemas.pose import PoseHits
 from app.api.schemas.search import MotionHits, WordHits
 from app.errors import BadField
-from app.services.find.hits import Hit, Hits, PartScore
+from app.search.index.facets import Facet
+from app.services.find.hits import Hit, HitGroup, Hits, PartScore
 from app.store.clips.partial import FIELDS, PartialClip
 from app.store.clips.record import ClipOrigin, ClipState, ClipWarning, Reanalysis
 
@@ -56,9 +57,25 @@ FULL: dict[str, Any] = {
 EMPTY = FULL | dict.fromkeys(("path", "duration", "frame_rate", "error", "reanalysis", "origin"))
 
 
-def _hits(parts: tuple[PartScore, ...] = (), time: float | None = None) -> Hits:
+PARTS = (PartScore("words.0", True, 0.123456, 0.25), PartScore("file", False, 1.0, 0.0))
+FACETS = {"task": Facet((("walk", 2),), 1, 3), "speed": Facet(quartiles=(0.0, 1.0, 2.0, 3.0, 4.0))}
+
+
+def _hits(
+    parts: tuple[PartScore, ...] = (), time: float | None = None, group: HitGroup | None = None
+) -> Hits:
     hits = [
-        Hit(rank, 1 / (3 + rank), 0.1 * rank, 0.1 + 0.2, 1 / 3, PartialClip(values), time, parts)
+        Hit(
+            rank,
+            1 / (3 + rank),
+            0.1 * rank,
+            0.1 + 0.2,
+            1 / 3,
+            PartialClip(values),
+            time,
+            parts,
+            group,
+        )
         for rank, values in enumerate((FULL, EMPTY | {"created_at": FULL["created_at"]}), 1)
     ]
     return Hits(
@@ -72,7 +89,8 @@ PAGES = [
     (WordHits, _hits()),
     (WordHits, replace(_hits(), expanded=None, confidence=None)),
     (PoseHits, _hits(time=0.25)),
-    (ComposedHits, _hits((PartScore("words.0", True, 0.123456), PartScore("file", False, 1.0)))),
+    (ComposedHits, _hits(PARTS)),
+    (ComposedHits, replace(_hits(PARTS, group=HitGroup("person", None, 1)), facets=FACETS)),
 ]
 
 

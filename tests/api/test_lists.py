@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 import httpx2
@@ -108,3 +109,41 @@ def test_too_many_fields_or_none_are_refused(demo: httpx2.Client) -> None:
     for fields in (",".join(["id"] * 61), "", " , "):
         assert demo.get("/v1/clips", params={"fields": fields}).status_code == 422
     assert {"clip", "score"} <= Hit.model_fields.keys()
+
+
+TREE = {"any_of": [{"task": "walk"}, {"task": "kick", "none_of": [{"person": "ada"}]}]}
+
+
+def test_lists_and_searches_filter_by_a_tree(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    text = json.dumps(TREE)
+    listed = demo.get("/v1/clips", params={"where": text, "limit": 100}).json()
+    found = {(clip["task"], clip["person"]) for clip in listed["items"]}
+    assert {task for task, _ in found} == {"walk", "kick"}
+    assert ("kick", "ada") not in found
+    assert listed["total"] == len(listed["items"])
+    body = {"examples": [{"clip_id": walk["id"]}], "include_self": True, "limit": 100}
+    for where in (TREE, text):
+        hits = demo.post("/v1/search", json={**body, "filter": {"where": where}}).json()["items"]
+        assert {hit["clip"]["id"] for hit in hits} == {clip["id"] for clip in listed["items"]}
+    measured = demo.get("/v1/measures", params={"where": text})
+    assert measured.status_code == 200
+
+
+def test_a_saved_search_keeps_its_tree(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    query = {"examples": [{"clip_id": walk["id"]}], "filter": {"where": TREE}, "limit": 100}
+    direct = demo.post("/v1/search", json=query).json()["items"]
+    saved = demo.post("/v1/searches", json={"name": "a tree", "query": query}).json()
+    assert saved["query"]["filter"] == {"where": TREE}
+    again = demo.get(f"/v1/searches/{saved['id']}/hits").json()["items"]
+    assert [hit["clip"]["id"] for hit in again] == [hit["clip"]["id"] for hit in direct]
+    demo.delete(f"/v1/searches/{saved['id']}")
+
+
+@pytest.mark.parametrize(
+    ("where", "location"),
+    [("[1", "where"), ("[]", "where"), ('{"all_of": [{"tsak": "a"}]}', "all_of.0.tsak")],
+)
+def test_a_wrong_tree_is_a_problem(demo: httpx2.Client, where: str, location: str) -> None:
+    answer = demo.get("/v1/clips", params={"where": where})
+    assert_problem(answer, 422, "bad_field")
+    assert location in answer.text

@@ -42,6 +42,7 @@ def test_hits_have_their_shape_and_say_what_each_part_contributed(
         "library_version",
         "items",
         "next",
+        "facets",
         "unknown_words",
         "confidence",
         "expanded",
@@ -49,7 +50,7 @@ def test_hits_have_their_shape_and_say_what_each_part_contributed(
     assert (reply["method"], reply["unknown_words"]) == ("fused", ["zzyzx"])
     assert [hit["rank"] for hit in reply["items"]] == [1, 2, 3]
     for hit in reply["items"]:
-        assert set(hit) == {"rank", "score", "distance", "start", "end", "clip", "parts"}
+        assert set(hit) == {"rank", "score", "distance", "start", "end", "clip", "parts", "group"}
         assert set(hit["clip"]) == CLIP_FIELDS
         assert [(part["part"], part["against"]) for part in hit["parts"]] == [
             ("examples.0", False),
@@ -57,6 +58,8 @@ def test_hits_have_their_shape_and_say_what_each_part_contributed(
             ("words.0", False),
         ]
         assert all(0 <= part["score"] <= 1 for part in hit["parts"])
+        costs = [part["cost"] for part in hit["parts"]]
+        assert sum(costs) == pytest.approx(hit["distance"], abs=1e-6)
     assert reply["items"][0]["clip"]["task"] == "walk"
 
 
@@ -159,3 +162,20 @@ def test_an_unknown_clip_and_a_form_that_is_no_json(
     for form in ({"examples": "{"}, {"words": "[walk"}, {"words": deep}, {"examples": deep}):
         answer = demo.post("/v1/search", data=form, files={"none": ("", b"")})
         assert_problem(answer, 422, "bad_field", f"body.{next(iter(form))}")
+
+
+def test_hits_are_grouped_and_counted(demo: httpx2.Client, walk: dict[str, Any]) -> None:
+    body = {"examples": [{"clip_id": walk["id"]}], "limit": 100, "include_self": True}
+    asked = {**body, "group_by": "person", "facets": ["task", "word", "duration"]}
+    reply = _search(demo, **asked)
+    groups = [hit["group"] for hit in reply["items"]]
+    assert len({group["value"] for group in groups}) == len(groups)
+    total = sum(group["count"] for group in groups)
+    facet = reply["facets"]["task"]
+    assert sum(one["count"] for one in facet["values"]) + facet["missing"] == total
+    assert len(reply["facets"]["duration"]["quartiles"]) == 5
+    one = _search(demo, **body, group_by="person", group=groups[0]["value"])
+    assert len(one["items"]) == groups[0]["count"]
+    assert {hit["clip"]["person"] for hit in one["items"]} == {groups[0]["value"]}
+    answer = demo.post("/v1/search", json={**body, "facets": ["persons"]})
+    assert_problem(answer, 422, "bad_field", "body.facets")

@@ -112,6 +112,7 @@ def test_a_call_with_two_bodies_has_an_optional_parameter(idle: httpx2.Client) -
         "/v1/search",
         "/v1/search/motion",
         "/v1/search/pose",
+        "/v1/search/why",
         "/v1/recognize",
     }
     for parameters in two_bodies.values():

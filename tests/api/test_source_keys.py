@@ -112,6 +112,7 @@ def test_clips_of_others_do_not_exist(lab: tuple[httpx2.Client, str, str]) -> No
         ("/motion", {"clip_id": other}),
         ("/pose", {"clip_id": other, "time": 0.0}),
         ("", {"examples": [{"clip_id": own}, {"clip_id": other}]}),
+        ("/why", {"examples": [{"clip_id": own}], "hit": other}),
     ):
         assert_problem(client.post(f"/v1/search{kind}", json=body), 404, "clip_not_found")
 
@@ -172,4 +173,5 @@ def test_every_route_with_such_keys_is_known() -> None:
         *("get_self_similarity", "get_motion_volume"),
         *("list_annotations", "get_annotation", "get_annotation_file", "get_annotation_table"),
         *("search_motion", "search_words", "search_pose", "search_parts"),
+        "explain_search",
     }

@@ -171,3 +171,21 @@ def _refused(kinedex: Kinedex, *words: str) -> str:
     assert (ended.code, ended.out) == (1, "")
     assert "Traceback" not in ended.err
     return ended.err
+
+
+def test_a_query_of_several_parts_is_answered_and_explained(kinedex: Kinedex) -> None:
+    listed = kinedex("clips", "list", "--json").json()["items"]
+    kick = next(clip["id"] for clip in listed if clip["task"] == "kick")
+    walk = next(clip["id"] for clip in listed if clip["task"] == "walk")
+    asked = ("query", "--like", kick, "--unlike", walk, "--body", '{"method": "vector"}')
+    found = kinedex(*asked, "--limit", "3", "--json").json()
+    assert (found["method"], len(found["items"])) == ("vector", 3)
+    best = found["items"][0]["clip"]["id"]
+    why = kinedex(*asked, "--why", best, "--json").json()
+    assert [part["part"] for part in why["parts"]] == ["examples.0", "examples.1"]
+    table = kinedex(*asked, "--why", best).out
+    assert "hit 1" in table
+    assert " cm" in table
+    refused = kinedex("query", "--body", '{"exmples": []}')
+    assert refused.code == 1
+    assert "exmples" in refused.err

@@ -49,7 +49,7 @@ CONDITIONS = st.builds(
     is_negated=st.booleans(),
 )
 
-FILTERS = st.builds(
+LEAVES = st.builds(
     ClipFilter,
     person=st.lists(st.sampled_from(("ada", "bruno", "nobody")), max_size=2).map(tuple),
     task=st.lists(st.sampled_from(("walk", "run")), max_size=2).map(tuple),
@@ -67,8 +67,30 @@ FILTERS = st.builds(
 )
 
 
+def _above(below: st.SearchStrategy[ClipFilter]) -> st.SearchStrategy[ClipFilter]:
+    """Filters that have others below them."""
+    some = st.lists(below, max_size=2).map(tuple)
+    word = st.sampled_from(((), (), ("slow",)))
+    return st.builds(ClipFilter, all_of=some, any_of=some, none_of=some, word=word)
+
+
+FILTERS = st.recursive(LEAVES, _above, max_leaves=6)
+"""Filters, and trees of filters."""
+
+
 def passes(clip: IndexedClip, clip_filter: ClipFilter) -> bool:
-    """Whether a clip passes a filter, without an index."""
+    """Whether a clip passes a tree of filters, without an index."""
+    if not all(passes(clip, one) for one in clip_filter.all_of):
+        return False
+    if clip_filter.any_of and not any(passes(clip, one) for one in clip_filter.any_of):
+        return False
+    if any(passes(clip, one) for one in clip_filter.none_of):
+        return False
+    return _passes_alone(clip, clip_filter)
+
+
+def _passes_alone(clip: IndexedClip, clip_filter: ClipFilter) -> bool:
+    """Whether a clip meets the conditions of a filter, without those below it."""
     for name in ("person", "task", "license", "source"):
         values = getattr(clip_filter, name)
         if values and getattr(clip, name) not in values:

@@ -15,7 +15,8 @@ from app.api.openapi import body, refusals
 from app.api.queries import QUERY_FILES, source_of
 from app.api.schemas.pose import A_POSE, PoseHits, PoseSearch, PoseSearchForm
 from app.errors import ClipNotReady
-from app.services.find.by_pose import PoseQuery, find_pose
+from app.services.find.by_pose import find_pose
+from app.services.find.queries import PoseQuery
 
 router = APIRouter(prefix="/v1/search", tags=["search"])
 

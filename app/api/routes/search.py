@@ -1,4 +1,4 @@
-"""Searches: by example, by words, and by several of both."""
+"""Searches by example and by words."""
 
 from __future__ import annotations
 
@@ -12,13 +12,11 @@ from app.api.deps import Lib, reads_source
 from app.api.guard.admission import heavy
 from app.api.hit_pages import ChosenFields, HitPage
 from app.api.openapi import body, refusals
-from app.api.queries import QUERY_FILES, file_of, source_of
-from app.api.schemas.composed_search import ComposedHits, ComposedSearch, ComposedSearchForm
+from app.api.queries import QUERY_FILES, source_of
 from app.api.schemas.search import MotionHits, MotionSearch, MotionSearchForm, WordHits, WordSearch
 from app.errors import ClipNotReady, ModelNotFitted, NotEnoughLabels
 from app.services.find import find
-from app.services.find.by_parts import find_by_parts
-from app.services.find.queries import ComposedQuery, MotionQuery
+from app.services.find.queries import MotionQuery
 
 router = APIRouter(prefix="/v1/search", tags=["search"])
 
@@ -38,27 +36,6 @@ _MOTION_EXAMPLES = {
         "scope": "windows",
     },
     "steps like one of its steps": {"clip_id": "CLIP_ID", "segment": 0, "scope": "segments"},
-}
-
-_COMPOSED_EXAMPLES = {
-    "like two motions": {
-        "examples": [
-            {"clip_id": "CLIP_ID"},
-            {"clip_id": "CLIP_ID", "start": 0.5, "end": 1.5, "weight": 0.5},
-        ],
-        "limit": 5,
-    },
-    "like one motion, not like another, among walks": {
-        "examples": [
-            {"clip_id": "CLIP_ID"},
-            {"clip_id": "CLIP_ID", "end": 1, "against": True},
-        ],
-        "filter": {"task": ["walk"]},
-    },
-    "like a motion, and of these words": {
-        "examples": [{"clip_id": "CLIP_ID"}],
-        "words": ["wave", "-tired"],
-    },
 }
 
 
@@ -111,34 +88,3 @@ def search_words(lib: Lib, sent: WordSearch, fields: ChosenFields = None) -> Res
     """
     page = HitPage.of(WordHits, fields)
     return page.answer(find.find_words(lib, replace(sent.query(), clip_fields=page.clip_fields)))
-
-
-async def _composed_query(request: Request) -> ComposedQuery:
-    if not is_multipart(request):
-        return (await read_json(request, ComposedSearch)).query()
-    form, uploads = await read_form(request, ComposedSearchForm, QUERY_FILES)
-    return form.query(file_of(uploads, "file"), file_of(uploads, "skeleton"))
-
-
-@router.post(
-    "",
-    dependencies=[reads_source, Depends(_composed_query), heavy],
-    responses=refusals(400, 404, 413, 415, 503, 507, ClipNotReady, ModelNotFitted, NotEnoughLabels),
-    response_model=ComposedHits,
-    openapi_extra=body(
-        model=ComposedSearch,
-        examples=_COMPOSED_EXAMPLES,
-        form=ComposedSearchForm,
-        files=QUERY_FILES,
-    ),
-)
-def search_parts(
-    lib: Lib, query: Annotated[ComposedQuery, Depends(_composed_query)], fields: ChosenFields = None
-) -> Response:
-    """Find motions by several parts together: examples and words, for something or against it.
-
-    A clip is a good hit if it is like every example that is for something, carries the words, and
-    is like no example that is against something. Each hit tells what each part contributed.
-    """
-    page = HitPage.of(ComposedHits, fields)
-    return page.answer(find_by_parts(lib, replace(query, clip_fields=page.clip_fields)))

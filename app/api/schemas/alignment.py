@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import Field
 
@@ -72,15 +72,20 @@ class Alignment(Outgoing):
     @classmethod
     def of(cls, found: AlignedClips) -> Alignment:
         """The alignment as the API shows it."""
-        return cls(
-            distance=found.distance,
-            body_lengths=[round(length, _LENGTH_DIGITS) for length in found.body_lengths],
-            path=plain(found.times.round(_TIME_DIGITS)),
-            joints=list(SUN_ROLES),
-            differences=plain(found.differences.round(_LENGTH_DIGITS)),
-            mean_differences=plain(found.differences.mean(axis=0).round(_LENGTH_DIGITS)),
-            peaks=[_peak(found, step) for step in found.peaks.tolist()],
-        )
+        return cls(**members_of(found))
+
+
+def members_of(found: AlignedClips) -> dict[str, Any]:
+    """The members of an `Alignment`."""
+    return {
+        "distance": found.distance,
+        "body_lengths": [round(length, _LENGTH_DIGITS) for length in found.body_lengths],
+        "path": plain(found.times.round(_TIME_DIGITS)),
+        "joints": list(SUN_ROLES),
+        "differences": plain(found.differences.round(_LENGTH_DIGITS)),
+        "mean_differences": plain(found.differences.mean(axis=0).round(_LENGTH_DIGITS)),
+        "peaks": [_peak(found, step) for step in found.peaks.tolist()],
+    }
 
 
 def _peak(found: AlignedClips, step: int) -> Peak:

@@ -2,13 +2,28 @@
 
 from __future__ import annotations
 
-from typing import Any, Self
+import json
+from typing import Annotated, Any, Self
 
-from pydantic import ConfigDict, Field, ModelWrapValidatorHandler, PrivateAttr, model_validator
+from pydantic import (
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ModelWrapValidatorHandler,
+    PrivateAttr,
+    WithJsonSchema,
+    model_validator,
+)
 from pydantic.config import JsonDict
 
 from app.api.schemas.base import ENERGY, SPEED, TEMPO, TRAVEL, AnyOf, Incoming, Measure, Seconds
-from app.search.index.filters import MEASURE_PATTERN, META_PATTERN, is_open_key
+from app.search.index.filters import (
+    MAX_DEPTH,
+    MAX_FILTERS,
+    MEASURE_PATTERN,
+    META_PATTERN,
+    is_open_key,
+)
 
 _VALUE: JsonDict = {"type": ["string", "number", "boolean"], "maxLength": 300}
 _KINDS = "Kinds of it too, as of a word (`/v1/labels/tree`); none with = before it."
@@ -17,6 +32,38 @@ _META: JsonDict = {
     " `meta.KEY.min` and `meta.KEY.max` are numbers, both ends included.",
     "anyOf": [_VALUE, {"type": "array", "items": _VALUE, "maxItems": 100}],
 }
+
+_WHERE = (
+    'A tree of filters, as JSON: {"any_of": [{"task": "walk"}, {"none_of": '
+    '[{"person": "ada"}]}]}. `all_of`, `any_of` and `none_of` are arrays of filters with the '
+    f"keys of this one; at most {MAX_DEPTH} inside each other, and {MAX_FILTERS} in all."
+)
+
+
+def _tree(value: Any) -> Any:
+    """A tree of filters from an object, or from its JSON text."""
+    try:
+        tree = json.loads(value) if isinstance(value, str) else value
+    except (ValueError, RecursionError):
+        tree = None
+    if isinstance(tree, dict):
+        return tree
+    raise ValueError("must be a JSON object")
+
+
+Where = Annotated[
+    Any,
+    BeforeValidator(_tree),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "object", "additionalProperties": True, "maxProperties": 100},
+                {"type": "string", "maxLength": 20_000},
+            ]
+        }
+    ),
+]
+Time = Annotated[str, Field(max_length=40)]
 
 _BOUND: JsonDict = {"description": "A bound of a measure, included.", "type": "number"}
 
@@ -51,6 +98,14 @@ class Filter(Incoming):
     )
     not_folder: AnyOf | None = Field(None, description="Clips of none of these folders.")
     collection: AnyOf | None = Field(None, description="Ids of collections: clips in any of them.")
+    annotation: AnyOf | None = Field(
+        None, description="Words: clips with an annotation that has any of them, or a kind of it."
+    )
+    created_after: Time | None = Field(
+        None, description="Clips that came at this time or later, ISO 8601; UTC without a zone."
+    )
+    created_before: Time | None = Field(None, description="Clips that came before this time.")
+    where: Where | None = Field(None, description=_WHERE)
     min_duration: Seconds | None = Field(None, description="Seconds.")
     max_duration: Seconds | None = Field(None, description="Seconds.")
     min_frame_rate: Measure | None = Field(None, description="Frames per second.")

@@ -12,7 +12,7 @@ from app.api.schemas.query_source import ClipId, QueryFields, QueryForm
 from app.api.schemas.search import Hit
 from app.motion.roles.joint_roles import SUN_ROLES
 from app.search.pose.pose_matches import MatchesPerClip
-from app.services.find.by_pose import PoseQuery
+from app.services.find.queries import PoseQuery
 from app.services.find.query_source import QuerySource
 
 _POINT = {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}

@@ -8,6 +8,7 @@ from kinedex.calls import clip_annotations as calls_clip_annotations
 from kinedex.calls import clip_views as calls_clip_views
 from kinedex.calls import clips as calls_clips
 from kinedex.calls import collections as calls_collections
+from kinedex.calls import composed_search as calls_composed_search
 from kinedex.calls import curation as calls_curation
 from kinedex.calls import edits as calls_edits
 from kinedex.calls import evaluations as calls_evaluations
@@ -19,6 +20,7 @@ from kinedex.calls import keyposes as calls_keyposes
 from kinedex.calls import label_tree as calls_label_tree
 from kinedex.calls import labels as calls_labels
 from kinedex.calls import low_dimensional as calls_low_dimensional
+from kinedex.calls import manifests as calls_manifests
 from kinedex.calls import measures as calls_measures
 from kinedex.calls import models as calls_models
 from kinedex.calls import poses as calls_poses
@@ -98,7 +100,8 @@ class Search(Group[SenderType]):
 
     motion = CallMethod(calls_search.search_motion)
     words = CallMethod(calls_search.search_words)
-    parts = CallMethod(calls_search.search_parts)
+    parts = CallMethod(calls_composed_search.search_parts)
+    why = CallMethod(calls_composed_search.explain_search)
     pose = CallMethod(calls_poses.search_pose)
     space = CallMethod(calls_space.get_space)
     space_columns = CallMethod(calls_space.get_space_columns)
@@ -132,8 +135,8 @@ class Labels(Group[SenderType]):
     licenses = ListMethod(calls_labels.list_licenses)
     metadata = ListMethod(calls_labels.list_metadata)
     folders = ListMethod(calls_labels.list_folders)
-    manifest = CallMethod(calls_labels.get_manifest)
-    annotation_table = CallMethod(calls_labels.get_annotation_table)
+    manifest = CallMethod(calls_manifests.get_manifest)
+    annotation_table = CallMethod(calls_manifests.get_annotation_table)
     tree = CallMethod(calls_label_tree.get_label_tree)
     put_tree = CallMethod(calls_label_tree.put_label_tree)
 

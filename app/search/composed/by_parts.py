@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
-from app.search.composed.surprise import Part, mean_surprise
+from app.search.composed.surprise import Part, costs, mean_surprise
 from app.search.example.fusion import SHORTLIST
 from app.search.example.reranking import ShortlistRanking
 from app.search.ranking.cursor import Anchor, Position
@@ -79,6 +79,10 @@ class PartsRanking:
         row = self._rows[clip_id]
         fast = tuple(float(one.probabilities[row]) for one in self._evidence)
         return self._measured.get(clip_id, fast)
+
+    def costs(self, clip_id: str) -> list[float]:
+        """What each part adds to the distance of a clip of a page."""
+        return costs(self._parts, self.probabilities(clip_id))
 
     @cached_property
     def _rows(self) -> dict[str, int]:

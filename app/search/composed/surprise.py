@@ -60,14 +60,39 @@ def mean_surprise(parts: Sequence[Part], probabilities: Sequence[FloatArray]) ->
     """
     pairs = list(zip(parts, probabilities, strict=True))
     pooled = [(part, likely) for part, likely in pairs if part.is_pooled]
-    alone = [(part, likely) for part, likely in pairs if not part.is_pooled]
+    surprises = [_weighted(part, likely) for part, likely in pairs if not part.is_pooled]
     if pooled:
-        weight = sum(part.weight for part, _ in pooled)
-        alone.append((Part(weight), _pool(pooled)))
-    surprises = [
-        part.weight * surprise(likely, is_against=part.is_against) for part, likely in alone
-    ]
+        surprises.append(_weighted(Part(_weight(pooled)), _pool(pooled)))
     return np.asarray(np.sum(surprises, axis=0) / sum(part.weight for part in parts))
+
+
+def costs(parts: Sequence[Part], probabilities: Sequence[float]) -> list[float]:
+    """What each part adds to the mean surprise of a clip; the sum is `mean_surprise`.
+
+    The cost of the pool is divided among its parts in proportion to the surprise of each alone.
+    """
+    likely = [np.array([one]) for one in probabilities]
+    pooled = [(part, one) for part, one in zip(parts, likely, strict=True) if part.is_pooled]
+    alone = [float(_weighted(part, one)[0]) for part, one in zip(parts, likely, strict=True)]
+    ratio = 1.0
+    if pooled:
+        together = float(_weighted(Part(_weight(pooled)), _pool(pooled))[0])
+        each = sum(cost for part, cost in zip(parts, alone, strict=True) if part.is_pooled)
+        ratio = together / each if each > 0.0 else 1.0
+    total = sum(part.weight for part in parts)
+    return [
+        cost * (ratio if part.is_pooled else 1.0) / total
+        for part, cost in zip(parts, alone, strict=True)
+    ]
+
+
+def _weighted(part: Part, likely: FloatArray) -> FloatArray:
+    """(n,) the weighted surprise of one part."""
+    return part.weight * surprise(likely, is_against=part.is_against)
+
+
+def _weight(pooled: Sequence[tuple[Part, FloatArray]]) -> float:
+    return sum(part.weight for part, _ in pooled)
 
 
 def _pool(pooled: Sequence[tuple[Part, FloatArray]]) -> FloatArray:
@@ -76,5 +101,5 @@ def _pool(pooled: Sequence[tuple[Part, FloatArray]]) -> FloatArray:
         part.weight * (surprise(likely, is_against=True) - surprise(likely, is_against=False))
         for part, likely in pooled
     ]
-    mean = np.sum(odds, axis=0) / sum(part.weight for part, _ in pooled)
+    mean = np.sum(odds, axis=0) / _weight(pooled)
     return np.asarray(1.0 / (1.0 + np.exp(-mean)))

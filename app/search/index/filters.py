@@ -7,16 +7,21 @@ collection, or an array of ids. `folder` and `not_folder`
 name folders of the paths of files; the folders below them count too. `meta.KEY` and `not_meta.KEY`
 are values of a key of the metadata, `meta.KEY.min` and `meta.KEY.max` numbers. `measure.NAME.min`
 and `measure.NAME.max` are bounds of any measure (`measures.EVERY`). Both ends of a range
-are included. A clip must meet all conditions. A clip without a label meets all `not_` conditions
-for this label; a clip without a measure meets no condition on it.
+are included. `annotation` is a word of an annotation, or an array of words. `created_after` and
+`created_before` are times in ISO 8601; the first is included.
+
+A clip must meet all conditions. A clip without a label meets all `not_` conditions for this label;
+a clip without a measure meets no condition on it. Conditions are combined in trees: `all_of`,
+`any_of` and `none_of` are arrays of filters, and `where` is one filter.
 """
 
 from __future__ import annotations
 
 import math
 import unicodedata
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from datetime import UTC, datetime
 from typing import Any
 
 from app.errors import BadField
@@ -27,6 +32,14 @@ from app.store.clips.measures import EVERY, MEASURES
 from app.store.clips.metadata_values import as_text, from_cell
 from app.store.clips.record import META
 
+TREE_KEYS = ("all_of", "any_of", "none_of")
+WHERE = "where"
+MAX_DEPTH = 5
+"""The most filters inside each other in a filter."""
+MAX_FILTERS = 50
+"""The most filters of a tree of filters."""
+DATE_KEYS = ("created_after", "created_before")
+ANNOTATION = "annotation"
 LABEL_KEYS = ("person", "task", "word", "license", "source", "folder")
 COLLECTION = "collection"
 NOT = "not_"
@@ -52,23 +65,62 @@ def parse_filter(given: Mapping[str, Any] | None) -> ClipFilter:
 
     Raises BadField, with a location for each unknown key and for each bad value.
     """
-    places: list[Place] = []
-    values: dict[str, Any] = {}
-    conditions = _Conditions()
-    bounds: dict[str, MeasureBound] = {}
-    for key, value in (given or {}).items():
-        try:
-            if key.startswith(MEASURE):
-                _add_bound(bounds, key, value)
-            elif is_open_key(key):
-                conditions.add(key, value)
-            else:
-                values[key] = _read(key, value)
-        except ValueError as problem:
-            places.append(Place(f"filter.{key}", str(problem)))
-    if places:
-        raise BadField("The filter cannot be used.", places=places)
-    return ClipFilter(**values, metadata=conditions.all(), measured=tuple(bounds.values()))
+    reader = _Reader()
+    found = reader.read(given or {}, "filter", 0)
+    if reader.places:
+        raise BadField("The filter cannot be used.", places=reader.places)
+    return found
+
+
+class _Reader:
+    """Reads a filter and the filters below it. places: what is wrong."""
+
+    def __init__(self) -> None:
+        self.places: list[Place] = []
+        self._count = 0
+
+    def read(self, given: Mapping[str, Any], location: str, depth: int) -> ClipFilter:
+        """One filter. depth: of filters above it."""
+        values: dict[str, Any] = {}
+        conditions = _Conditions()
+        bounds: dict[str, MeasureBound] = {}
+        for key, value in given.items():
+            place = f"{location}.{key}"
+            try:
+                if key.startswith(MEASURE):
+                    _add_bound(bounds, key, value)
+                elif is_open_key(key):
+                    conditions.add(key, value)
+                elif key == WHERE:
+                    values["all_of"] = (
+                        *values.get("all_of", ()),
+                        *self._below([value], place, depth, names=[place]),
+                    )
+                elif key in TREE_KEYS:
+                    values[key] = values.get(key, ()) + self._below(value, place, depth)
+                else:
+                    values[key] = _read(key, value)
+            except ValueError as problem:
+                self.places.append(Place(place, str(problem)))
+        return ClipFilter(**values, metadata=conditions.all(), measured=tuple(bounds.values()))
+
+    def _below(
+        self, given: Any, location: str, depth: int, names: Sequence[str] | None = None
+    ) -> tuple[ClipFilter, ...]:
+        """Filters below a filter. names: their places, by default by their index."""
+        if not isinstance(given, list | tuple) or not given:
+            raise ValueError("must be an array of filters, and not an empty one")
+        if not all(isinstance(one, Mapping) for one in given):
+            raise ValueError("must be filters: objects")
+        if depth >= MAX_DEPTH:
+            raise ValueError(f"at most {MAX_DEPTH} filters may be inside each other")
+        self._count += len(given)
+        if self._count > MAX_FILTERS:
+            raise ValueError(f"a tree has at most {MAX_FILTERS} filters")
+        places = names or [f"{location}.{index}" for index in range(len(given))]
+        return tuple(
+            self.read(one, place, depth + 1) for one, place in zip(given, places, strict=True)
+        )
 
 
 def is_open_key(key: str) -> bool:
@@ -169,12 +221,28 @@ def _number(value: Any) -> float:
     return number
 
 
-def _read(key: str, value: Any) -> tuple[str, ...] | float | None:
+def _date(value: Any) -> datetime | None:
+    """A time; UTC without a zone. Raises ValueError."""
+    if value is None:
+        return None
+    try:
+        time = datetime.fromisoformat(value.strip())
+        return time.replace(tzinfo=UTC) if time.tzinfo is None else time.astimezone(UTC)
+    except (AttributeError, ValueError, OverflowError):
+        raise ValueError("must be a time as 2026-03-01 or 2026-03-01T12:00:00Z") from None
+
+
+def _read(key: str, value: Any) -> tuple[str, ...] | float | datetime | None:
     if key in (*LABEL_KEYS, *NOT_KEYS, COLLECTION):
         return _labels(key.removeprefix(NOT), value)
+    if key == ANNOTATION:
+        return _labels("word", value)
+    if key in DATE_KEYS:
+        return _date(value)
     if key in RANGE_KEYS:
         return _measure(value)
-    keys = ", ".join((*LABEL_KEYS, *NOT_KEYS, COLLECTION, *RANGE_KEYS, f"{META}KEY"))
+    others = (COLLECTION, ANNOTATION, *DATE_KEYS, *RANGE_KEYS, f"{META}KEY", *TREE_KEYS)
+    keys = ", ".join((*LABEL_KEYS, *NOT_KEYS, *others))
     raise ValueError(f"is not a key of a filter; the keys are {keys}")
 
 

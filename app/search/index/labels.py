@@ -115,8 +115,8 @@ class LabelView:
 
     ids: (n,) objects; alive: (n,) whether the clip was not removed; durations: (n,) seconds;
     measures: (n, m) in the order of FOUND, NaN for those that a clip lacks; quality: (n, q) float32
-    in the order of QUALITY, the same; coded: the columns of codes (n,) by label; labels: maps
-    labels to codes.
+    in the order of QUALITY, the same; created: (n,) seconds since 1970; coded: the columns of codes
+    (n,) by label; labels: maps labels to codes.
     """
 
     ids: IdArray
@@ -124,6 +124,7 @@ class LabelView:
     durations: FloatArray
     measures: FloatArray
     quality: FloatArray
+    created: FloatArray
     coded: dict[str, IntArray]
     labels: Labels
 
@@ -133,19 +134,7 @@ class LabelView:
 
         The filter's state and name are ignored: every clip here is ready.
         """
-        mask = self.alive.copy()
-        for name, least, most in clip_filter.ranges():
-            values = self.measured(name)
-            mask &= values >= (-np.inf if least is None else least)
-            mask &= values <= (np.inf if most is None else most)
-        for name, codes in self.labels.codes(clip_filter).items():
-            mask &= _any_of(self.coded[name], codes)
-        for name, codes in self.labels.codes(clip_filter, negated=True).items():
-            mask &= ~_any_of(self.coded[name], codes)
-        for condition in clip_filter.metadata:
-            mask &= self.labels.metadata.mask(condition, len(mask))
-        if clip_filter.collection:
-            mask &= self._is_one_of(clip_filter.members)
+        mask = self.alive & self._passes(clip_filter)
         source = visible_source()
         if source is not None:
             mask &= _any_of(self.coded["source"], self.labels.named["source"].codes([source]))
@@ -153,6 +142,38 @@ class LabelView:
             mask &= _any_of(self.coded["license"], self.labels.named["license"].codes(licenses))
         for clip_id in exclude:
             mask[self._numbers_of(clip_id)] = False
+        return mask
+
+    def _passes(self, clip_filter: ClipFilter) -> BoolArray:
+        """(n,) whether each clip passes a filter and the filters below it."""
+        mask = np.ones(len(self.ids), dtype=bool)
+        for name, least, most in clip_filter.ranges():
+            values = self.measured(name)
+            mask &= values >= (-np.inf if least is None else least)
+            mask &= values <= (np.inf if most is None else most)
+        if clip_filter.created_after is not None:
+            mask &= self.created >= clip_filter.created_after.timestamp()
+        if clip_filter.created_before is not None:
+            mask &= self.created < clip_filter.created_before.timestamp()
+        for name, codes in self.labels.codes(clip_filter).items():
+            mask &= _any_of(self.coded[name], codes)
+        for name, codes in self.labels.codes(clip_filter, negated=True).items():
+            mask &= ~_any_of(self.coded[name], codes)
+        for condition in clip_filter.metadata:
+            mask &= self.labels.metadata.mask(condition, len(mask))
+        for is_asked, ids in clip_filter.id_conditions():
+            if is_asked:
+                mask &= self._is_one_of(ids)
+        return self._below(clip_filter, mask)
+
+    def _below(self, clip_filter: ClipFilter, mask: BoolArray) -> BoolArray:
+        """(n,) the clips in `mask` (n,) that pass the filters below a filter."""
+        for one in clip_filter.all_of:
+            mask &= self._passes(one)
+        if clip_filter.any_of:
+            mask &= np.logical_or.reduce([self._passes(one) for one in clip_filter.any_of])
+        for one in clip_filter.none_of:
+            mask &= ~self._passes(one)
         return mask
 
     def _is_one_of(self, clip_ids: Iterable[str]) -> BoolArray:
@@ -208,6 +229,7 @@ class Labels:
         self._durations = Column(np.float64)
         self._measures = Column(np.float64, (len(FOUND),))
         self._quality = Column(np.float32, (len(QUALITY),))
+        self._created = Column(np.float64)
         self._alive = Column(np.bool_)
 
     def __len__(self) -> int:
@@ -226,6 +248,7 @@ class Labels:
         self._durations.extend([clip.duration for clip in clips])
         self._measures.extend([clip.measures for clip in clips])
         self._quality.extend([clip.quality for clip in clips])
+        self._created.extend([clip.created for clip in clips])
         self._alive.extend(np.ones(len(clips), dtype=bool))
         self.words.extend(clip.words for clip in clips)
         self.metadata.extend(clip.metadata for clip in clips)
@@ -266,6 +289,7 @@ class Labels:
             metadata=self.metadata.at(number),
             measures=tuple(self._measures.view()[number].tolist()),
             quality=tuple(self._quality.view()[number].tolist()),
+            created=float(self._created.view()[number]),
             array=array,
             **named,
         )
@@ -279,6 +303,7 @@ class Labels:
             durations=self._durations.view(),
             measures=self._measures.view(),
             quality=self._quality.view(),
+            created=self._created.view(),
             coded=coded | {"word": self.words.column.view()},
             labels=self,
         )

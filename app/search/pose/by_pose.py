@@ -83,7 +83,7 @@ class PoseRanking:
         self._query = query.astype(np.float64)
         self._load = load
         self._per_clip = per_clip
-        self._bounds = _bounds(rows, query)
+        self._bounds = pose_bounds(rows, query)
         self._mask = mask
 
     def page(self, after: Position | None, limit: int) -> PosePage:
@@ -168,7 +168,7 @@ def pose_distances(positions: FloatArray, query: FloatArray) -> FloatArray:
     return np.where(np.isnan(distances), np.inf, distances)
 
 
-def _bounds(rows: RowsView, query: FloatArray) -> FloatArray:
+def pose_bounds(rows: RowsView, query: FloatArray) -> FloatArray:
     """(n,) for each clip a lower bound, at least 0, of its frames' distances to `query` (36,)."""
     if rows.starts is None or not len(rows.starts):
         return np.zeros(0)

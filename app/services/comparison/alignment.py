@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,11 +16,10 @@ from app.motion.frame.body_frame import body_length
 from app.numerics.arrays import FloatArray, IntArray
 from app.search.example.distances import ACTIVE, FEATURES, active_frames, first_active_frame
 from app.services import fields
-from app.services.find.query import cut, describe
+from app.services.find.query import QueryDescriptors, describe, query_motion
 from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
 from app.services.library.ready_clips import ready_clip
-from app.services.library.stored_motion import load_motion
 from app.store.clips.record import ClipRecord
 
 MAX_SECONDS = 300.0
@@ -32,6 +31,9 @@ MAX_PEAKS = 5
 
 OTHER_FIELDS = {"clip_id": "other", "start": "other_start", "end": "other_end"}
 """The fields of the second clip, by the names that they have for the first."""
+
+COMPARED = (FEATURES, ACTIVE)
+"""The arrays of a motion that an alignment needs."""
 
 _ROUNDING = 1e-6
 
@@ -62,12 +64,21 @@ class AlignedClips:
 
 
 @dataclass(frozen=True, slots=True)
-class _Side:
-    """One of the two: features (m, 82) at 10 Hz, its first time in seconds, its size in meters."""
+class Side:
+    """One of two motions: features (m, 82), its first time in seconds, its size in meters.
+
+    seconds: between two of its frames.
+    """
 
     features: FloatArray
     start: float
     body_length: float
+    seconds: float = 1.0 / WARPING_RATE
+
+    def thinned(self, most: int) -> Side:
+        """At most `most` frames, evenly spaced."""
+        stride = math.ceil(len(self.features) / most)
+        return replace(self, features=self.features[::stride], seconds=self.seconds * stride)
 
 
 def align_clips(lib: Library, one: Part, other: Part) -> AlignedClips:
@@ -79,7 +90,14 @@ def align_clips(lib: Library, one: Part, other: Part) -> AlignedClips:
     ours = _side(lib, one)
     with _renamed(OTHER_FIELDS):
         theirs = _side(lib, other)
+    return align_sides(ours, theirs)
+
+
+def align_sides(ours: Side, theirs: Side) -> AlignedClips:
+    """The alignment of two motions."""
     found = align(ours.features, theirs.features)
+    paces = np.multiply((ours.seconds, theirs.seconds), WARPING_RATE)
+    found = replace(found, times=found.times * paces)
     sizes = (ours.body_length, theirs.body_length)
     return AlignedClips(
         distance=found.distance,
@@ -90,18 +108,20 @@ def align_clips(lib: Library, one: Part, other: Part) -> AlignedClips:
     )
 
 
-def _side(lib: Library, part: Part) -> _Side:
-    clip = ready_clip(lib, part.clip_id)
-    _check_length(clip, part)
+def _side(lib: Library, part: Part) -> Side:
+    _check_length(ready_clip(lib, part.clip_id), part)
     source = QuerySource(part.clip_id, start=part.start, end=part.end)
-    arrays = describe(lib, source, (FEATURES, ACTIVE)).arrays
+    return side_of(lib, describe(lib, source, COMPARED))
+
+
+def side_of(lib: Library, described: QueryDescriptors) -> Side:
+    """One side of an alignment. described: with the arrays COMPARED."""
+    arrays, motion = described.arrays, query_motion(lib, described)
     # Search compares active parts too, so both have the same distance.
     features, span = active_frames(arrays[FEATURES], arrays[ACTIVE]), arrays[ACTIVE]
-    motion = load_motion(lib, clip)
-    first = math.floor((part.start or 0.0) * motion.frame_rate + _ROUNDING)
-    size = body_length(motion if source.is_whole else cut(motion, part.start, part.end))
+    first = math.floor((described.source.start or 0.0) * motion.frame_rate + _ROUNDING)
     idle = first_active_frame(span) / WARPING_RATE
-    return _Side(np.asarray(features), first / motion.frame_rate + idle, size)
+    return Side(np.asarray(features), first / motion.frame_rate + idle, body_length(motion))
 
 
 def _check_length(clip: ClipRecord, part: Part) -> None:

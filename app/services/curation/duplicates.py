@@ -77,6 +77,12 @@ def list_groups(
     return Duplicates(page, pending)
 
 
+def duplicate_groups(tx: Tx) -> dict[str, tuple[str, ...]]:
+    """The ids of the clips of each group of near-duplicates, by the id of the group."""
+    pairs = stored.open_pairs(tx, PairKind.SIMILAR, 0.0)
+    return {PREFIX + ids[0].removeprefix(CLIP_PREFIX): ids for ids in sorted(_connected(pairs))}
+
+
 def example_id(tx: Tx) -> str | None:
     """The id of a group, None without one."""
     pairs = stored.open_pairs(tx, PairKind.SIMILAR, 0.0, limit=1)

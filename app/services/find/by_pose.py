@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -18,9 +17,8 @@ from app.services import fields
 from app.services.find.hits import Hits, milliseconds_since
 from app.services.find.paging import Match, MatchPage, Paging
 from app.services.find.pose_query import pose_at, pose_of
-from app.services.find.queries import DEFAULT_LIMIT, Filter
+from app.services.find.queries import PoseQuery
 from app.services.find.query import describe
-from app.services.find.query_source import QuerySource
 from app.services.library.filters import resolved_filter
 from app.services.library.library import Library
 
@@ -28,27 +26,6 @@ METHOD = "pose"
 SCALE = 0.25
 """Body lengths at which the score is one half: about the distance of a pose from clips in which
 it does not occur."""
-
-
-@dataclass(frozen=True, slots=True)
-class PoseQuery:
-    """A search by pose: the pose of `source` at `time`, or the pose of 13 `positions`.
-
-    time: seconds from the start of the motion; positions: (13, 3) meters, Y up, in SUN_ROLES
-    order; heading and size do not matter; places: whether a clip may be one hit or several;
-    include_self: whether the queried clip may be a hit; cursor: `next` of the page before;
-    clip_fields: as in `MotionQuery`.
-    """
-
-    source: QuerySource | None = None
-    time: float | None = None
-    positions: Sequence[Sequence[Any]] | None = None
-    places: MatchesPerClip | str = MatchesPerClip.BEST
-    limit: int = DEFAULT_LIMIT
-    filter: Filter = None
-    include_self: bool = False
-    cursor: str | None = None
-    clip_fields: frozenset[str] | None = None
 
 
 def find_pose(lib: Library, query: PoseQuery) -> Hits:
@@ -61,7 +38,7 @@ def find_pose(lib: Library, query: PoseQuery) -> Hits:
     clip_filter, places = resolved_filter(lib, query.filter), _places(query.places)
     fields.limit(query.limit)
     version = lib.poses.catch_up(lib.store)
-    pose, exclude = _pose(lib, query)
+    pose, exclude = queried_pose(lib, query)
     question = cursors.digest("pose", pose.tobytes().hex(), places, clip_filter, sorted(exclude))
     paging = Paging.at(query.cursor, question, query.clip_fields)
     _, rows = lib.poses.state
@@ -73,8 +50,11 @@ def find_pose(lib: Library, query: PoseQuery) -> Hits:
     return Hits(METHOD, milliseconds_since(began), version, page.items, page.next)
 
 
-def _pose(lib: Library, query: PoseQuery) -> tuple[FloatArray, frozenset[str]]:
-    """(36,) vector of the queried pose, and the clips that must not be hits."""
+def queried_pose(lib: Library, query: PoseQuery) -> tuple[FloatArray, frozenset[str]]:
+    """(36,) vector of the queried pose, and the clips that must not be hits.
+
+    Raises what `find_pose` raises.
+    """
     if query.positions is not None:
         return _given_pose(query, query.positions), frozenset()
     if query.source is None:

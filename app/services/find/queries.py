@@ -6,7 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from app.search.composed.body_parts import BodyPart
 from app.search.example.methods import Method
+from app.search.pose.pose_matches import MatchesPerClip
+from app.services.find.arrangement import PLAIN, Arrangement
 from app.services.find.query_source import QuerySource
 from app.services.volume_options import STORED_VOLUMES, VolumeOptions
 from app.store.clips.filter import ClipFilter
@@ -71,34 +74,81 @@ class WordQuery:
 
 
 @dataclass(frozen=True, slots=True)
+class PoseQuery:
+    """A search by pose: the pose of `source` at `time`, or the pose of 13 `positions`.
+
+    time: seconds from the start of the motion; positions: (13, 3) meters, Y up, in SUN_ROLES
+    order; heading and size do not matter; places: whether a clip may be one hit or several;
+    include_self: whether the queried clip may be a hit; cursor: `next` of the page before;
+    clip_fields: as in `MotionQuery`.
+    """
+
+    source: QuerySource | None = None
+    time: float | None = None
+    positions: Sequence[Sequence[Any]] | None = None
+    places: MatchesPerClip | str = MatchesPerClip.BEST
+    limit: int = DEFAULT_LIMIT
+    filter: Filter = None
+    include_self: bool = False
+    cursor: str | None = None
+    clip_fields: frozenset[str] | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Example:
     """A motion of a query of several parts.
 
     part: its place in the query, as in `PartScore`; weight: above 0, relative to the other parts;
-    is_against: whether hits must not be like it.
+    is_against: whether hits must not be like it; body_part: of which alone counts, None for all.
     """
 
     part: str
     source: QuerySource
     weight: float = 1.0
     is_against: bool = False
+    body_part: BodyPart | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class PoseSequence:
+    """Poses that a clip takes one after the other. weight, is_against: as in `Example`."""
+
+    poses: Sequence[PoseQuery]
+    weight: float = 1.0
+    is_against: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Rhythm:
+    """A rhythm in which a clip moves. rate: cycles per minute; tolerance: a share of it; the others
+    are as in `Example`."""
+
+    rate: float
+    tolerance: float = 0.1
+    weight: float = 1.0
+    is_against: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class ComposedQuery:
-    """A search by examples and words together; at least one of them must be for something.
+    """A search by several parts together; at least one of them must be for something.
 
     Whole clips are compared. words, mode: as in `WordQuery`; the words together have weight 1; a
     word with a minus leaves out the clips that carry it. include_self: whether clips that are
-    examples may be hits. The other fields are as in `MotionQuery`.
+    examples may be hits. facets: names of `facets.NAMES` to count over all hits. The other fields
+    are as in `MotionQuery`.
     """
 
     examples: Sequence[Example] = ()
     words: Sequence[str] = ()
+    poses: PoseSequence | None = None
+    rhythm: Rhythm | None = None
     method: Method | str = Method.FUSED
     mode: str = "default"
     limit: int = DEFAULT_LIMIT
     filter: Filter = None
     include_self: bool = False
+    arrangement: Arrangement = PLAIN
+    facets: Sequence[str] = ()
     cursor: str | None = None
     clip_fields: frozenset[str] | None = None

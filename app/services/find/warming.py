@@ -17,8 +17,8 @@ import numpy as np
 from app.errors import StorageError
 from app.kinedex_error import KinedexError
 from app.services.find import find
-from app.services.find.by_pose import PoseQuery, find_pose
-from app.services.find.queries import MotionQuery, WordQuery
+from app.services.find.by_pose import find_pose
+from app.services.find.queries import MotionQuery, PoseQuery, WordQuery
 from app.services.find.query_source import QuerySource
 from app.services.library.analysis_pool import AnalysisRequest
 from app.services.library.library import Library

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from app.models.words.query import WordQuery
 from app.numerics.arrays import BoolArray, FloatArray, IntArray
+from app.search.composed.surprise import surprise
 from app.search.index.labels import LabelView
 from app.search.ranking.ranking import IdArray
 from app.services.find.by_words import Words, measure, probabilities, probably_carries
@@ -52,10 +53,11 @@ class WordParts:
         rows, distances = measure(self.lib, self.fitted, self.clips, mask, self.asked, self.mode)
         return rows, probabilities(self.fitted.model, self.asked, self.mode, distances)
 
-    def scores(self, ids: IdArray) -> list[tuple[PartScore, ...]]:
+    def scores(self, ids: IdArray, costs: Sequence[float]) -> list[tuple[PartScore, ...]]:
         """For each of the clips `ids` (m,), how likely it carries each text.
 
-        A text without a meaning in this library has no score.
+        costs: (m,) what all words together add to a clip's distance. It is divided among the texts
+        in proportion to the surprise of each. A text without a meaning has no score.
         """
         numbers = self.clips.numbers(ids)
         columns = [
@@ -63,14 +65,32 @@ class WordParts:
             for place, text in enumerate(self.texts)
         ]
         return [
-            tuple(
-                PartScore(part, is_against, score)
-                for part, found in columns
-                for is_against, values in found
-                if (score := values.get(int(number))) is not None
+            self._shared(
+                [
+                    PartScore(part, is_against, score, 0.0)
+                    for part, found in columns
+                    for is_against, values in found
+                    if (score := values.get(int(number))) is not None
+                ],
+                cost,
             )
-            for number in numbers
+            for number, cost in zip(numbers, costs, strict=True)
         ]
+
+    def _shared(self, texts: list[PartScore], cost: float) -> tuple[PartScore, ...]:
+        """The scores of texts, with their shares of the cost of all words together."""
+        surprises = [
+            surprise(np.array([one.score]), is_against=one.is_against).item() for one in texts
+        ]
+        if self.asked.items:  # then a text with a minus only leaves clips out
+            surprises = [
+                0.0 if one.is_against else own for one, own in zip(texts, surprises, strict=True)
+            ]
+        total = sum(surprises)
+        return tuple(
+            replace(one, cost=cost * own / total if total > 0.0 else 0.0)
+            for one, own in zip(texts, surprises, strict=True)
+        )
 
     def _of_text(self, text: str, numbers: IntArray) -> list[tuple[bool, dict[int, float]]]:
         """Whether a text is against something, and its probabilities by the clips' numbers.

@@ -10,6 +10,7 @@ from app.analysis.descriptors.windows import WIDTH, WINDOW_SCALES
 from app.analysis.descriptors.word_windows import INPUT_WIDTH, WORD_WINDOW_SPANS, WORD_WINDOWS
 from app.analysis.segments.segments import SEGMENT_SPANS, SEGMENT_VECTORS, SEGMENT_WIDTH
 from app.config import Settings
+from app.search.composed.body_parts import PoseSummaries
 from app.search.duplicates.candidates import MOMENTS
 from app.search.index.array_cache import ArrayCache
 from app.search.index.model_rows import ModelRows
@@ -41,10 +42,11 @@ class Library:
     again. word_scores, symbol_points, cca_points: the outputs of the word models for the indexed
     clips. pool: analyzes uploaded queries; a worker has its own pool. windows: the windows of all
     clips, by the name of their scale; segments: the segments of all clips; poses: the pose covers
-    of all clips; word_windows: the windows in which words are looked for, and window_words: their
-    probabilities; moments: their moments, for near-duplicates; the first search that needs paced or
-    one of these five loads it. metrics: the clips' coordinates in each learned metric. tree: of the
-    labels. kept_clips: the JSON of clips that searches showed.
+    of all clips, and pose_summaries their means and spreads; word_windows: the windows in which
+    words are looked for, and window_words: their probabilities; moments: their moments, for
+    near-duplicates; the first search that needs paced or one of these five loads it. metrics: the
+    clips' coordinates in each learned metric. tree: of the labels. kept_clips: the JSON of clips
+    that searches showed.
     """
 
     settings: Settings
@@ -61,6 +63,7 @@ class Library:
     windows: Mapping[str, VectorIndex]
     segments: VectorIndex
     poses: VectorIndex
+    pose_summaries: PoseSummaries
     word_windows: VectorIndex
     window_words: PartScores
     moments: VectorIndex
@@ -105,6 +108,7 @@ class Library:
                 layout=parts_layout(SEGMENT_VECTORS, SEGMENT_SPANS, SEGMENT_WIDTH)
             ),
             poses=VectorIndex(layout=POSES),
+            pose_summaries=PoseSummaries(),
             word_windows=VectorIndex(
                 layout=parts_layout(WORD_WINDOWS, WORD_WINDOW_SPANS, INPUT_WIDTH)
             ),

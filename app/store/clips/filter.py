@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from dataclasses import dataclass
+from datetime import datetime
 
-from sqlalchemy import ColumnElement, Select, String, and_, cast, func, or_, select
+from sqlalchemy import ColumnElement, Select, String, and_, cast, false, func, or_, select
 
 from app.store.clips import visibility
 from app.store.clips.measures import MEASURES, QUALITY
 from app.store.clips.record import ClipState
 from app.store.database.collection_tables import collection_items
-from app.store.database.tables import clip_measures, clip_metadata, clip_words, clips
+from app.store.database.engine import Tx
+from app.store.database.tables import (
+    clip_annotations,
+    clip_measures,
+    clip_metadata,
+    clip_words,
+    clips,
+)
 
 _LABELS = ("person", "task", "license", "source")
 """Labels that are columns of the table `clips`. ClipFilter has two fields for each: NAME and
@@ -59,15 +68,25 @@ class ClipFilter:
 
     A tuple is true if the clip has any of its values. A tuple whose name begins with `not_` is
     true if the clip has none of its values; a clip without the label passes. An empty tuple and
-    None are no condition. folder: the clip's file was in the folder or below it; collection: ids of
-    collections that hold the clip or a part of it; members: the ids of the clips in them, which a
-    search in memory needs (`services.library.filters`); missing: labels
-    (`MISSABLE`) of which the clip lacks at least one; has_warnings: whether it has any; q: a part
-    of the name, the path or a text of the metadata, in upper or lower case; min_NAME, max_NAME: of
-    a measure (`measures.MEASURES`), both ends included; measured: bounds of any. A search knows
-    none of state, missing, has_warnings and q.
+    None are no condition. all_of, any_of, none_of: filters of which a clip passes all, any and
+    none. ids: of clips; folder: the clip's file was in the folder or below it; collection: ids of
+    collections that hold the clip or a part of it; annotation: words that an annotation of the clip
+    has; members, annotated: the ids of the clips that meet these two conditions, which a search in
+    memory needs (`services.library.filters`); created_after, created_before: when the clip came;
+    missing: labels (`MISSABLE`) of which the clip lacks at least one; has_warnings: whether it has
+    any; q: a part of the name, the path or a text of the metadata, in upper or lower case;
+    min_NAME, max_NAME: of a measure (`measures.MEASURES`), both ends included; measured: bounds of
+    any. A search knows none of state, missing, has_warnings and q.
     """
 
+    all_of: tuple[ClipFilter, ...] = ()
+    any_of: tuple[ClipFilter, ...] = ()
+    none_of: tuple[ClipFilter, ...] = ()
+    ids: tuple[str, ...] = ()
+    annotation: tuple[str, ...] = ()
+    annotated: tuple[str, ...] = ()
+    created_after: datetime | None = None
+    created_before: datetime | None = None
     person: tuple[str, ...] = ()
     task: tuple[str, ...] = ()
     word: tuple[str, ...] = ()
@@ -108,6 +127,12 @@ class ClipFilter:
         """Whether every clip passes."""
         return self == ClipFilter()
 
+    def id_conditions(self) -> Iterator[tuple[bool, tuple[str, ...]]]:
+        """For each condition that names clips: whether it is asked for, and their ids."""
+        yield bool(self.ids), self.ids
+        yield bool(self.collection), self.members
+        yield bool(self.annotation), self.annotated
+
     def ranges(self) -> Iterator[tuple[str, float | None, float | None]]:
         """The measures with a condition, each with the least and the largest value."""
         for name in MEASURES:
@@ -123,7 +148,15 @@ def condition(filter: ClipFilter, clip_id: ColumnElement[str] = clips.c.id) -> C
 
     clip_id: `clips.c.id`, or an expression of the same value: the ids of `id_sets` contain it.
     """
+    return and_(visibility.is_visible(), _passes(filter, clip_id))
+
+
+def _passes(filter: ClipFilter, clip_id: ColumnElement[str] = clips.c.id) -> ColumnElement[bool]:
+    """The filter without what is visible; NULL counts as false."""
     terms = [*_label_terms(filter), *_range_terms(filter), *map(clip_id.in_, id_sets(filter))]
+    terms += [*_date_terms(filter), *_tree_terms(filter)]
+    if filter.ids:
+        terms.append(clips.c.id.in_(filter.ids))
     if filter.state:
         terms.append(clips.c.state.in_([state.value for state in filter.state]))
     if filter.not_word:
@@ -134,7 +167,24 @@ def condition(filter: ClipFilter, clip_id: ColumnElement[str] = clips.c.id) -> C
         terms.append(clips.c.searched.contains(filter.q.casefold(), autoescape=True))
     refused = (_holders(one) for one in filter.metadata if one.is_negated)
     terms.extend(map(clips.c.id.not_in, refused))
-    return and_(True, visibility.is_visible(), *terms, *_folder_terms(filter))
+    return and_(True, *terms, *_folder_terms(filter))
+
+
+def _tree_terms(filter: ClipFilter) -> Iterator[ColumnElement[bool]]:
+    """The conditions of the filters below this one."""
+    yield from map(_passes, filter.all_of)
+    if filter.any_of:
+        yield or_(*map(_passes, filter.any_of))
+    for one in filter.none_of:
+        # A comparison with NULL is NULL, and so is its opposite.
+        yield ~func.coalesce(_passes(one), false())
+
+
+def _date_terms(filter: ClipFilter) -> Iterator[ColumnElement[bool]]:
+    if filter.created_after is not None:
+        yield clips.c.created_at >= filter.created_after
+    if filter.created_before is not None:
+        yield clips.c.created_at < filter.created_before
 
 
 def id_sets(filter: ClipFilter) -> list[Select[tuple[str]]]:
@@ -145,6 +195,8 @@ def id_sets(filter: ClipFilter) -> list[Select[tuple[str]]]:
     accepted = [_holders(one) for one in filter.metadata if not one.is_negated]
     if filter.collection:
         accepted.append(_collected(filter.collection))
+    if filter.annotation:
+        accepted.append(_annotated(filter.annotation))
     return [*accepted, _carriers(filter.word)] if filter.word else accepted
 
 
@@ -152,6 +204,25 @@ def _collected(collection_ids: tuple[str, ...]) -> Select[tuple[str]]:
     """Ids of the clips that are in any of the collections."""
     column = collection_items.c
     return select(column.clip_id).where(column.collection_id.in_(collection_ids))
+
+
+def annotated_ids(tx: Tx, words: tuple[str, ...]) -> tuple[str, ...]:
+    """Ids of the clips with an annotation that has any of `words`, each once."""
+    query = select(clip_annotations.c.clip_id).where(_has_word(words)).distinct()
+    return tuple(tx.execute(query).scalars())
+
+
+def _annotated(words: tuple[str, ...]) -> Select[tuple[str]]:
+    """Ids of the clips with an annotation that has any of `words`."""
+    return select(clip_annotations.c.clip_id).where(_has_word(words))
+
+
+def _has_word(words: tuple[str, ...]) -> ColumnElement[bool]:
+    """The condition for annotations that have any of `words`."""
+    texts = cast(clip_annotations.c.words, String)
+    # The column holds a JSON array of texts; a database may keep letters escaped or not.
+    forms = {json.dumps(word, ensure_ascii=plain) for word in words for plain in (True, False)}
+    return or_(*(texts.contains(form, autoescape=True) for form in sorted(forms)))
 
 
 def _lack_terms(filter: ClipFilter) -> Iterator[ColumnElement[bool]]:

@@ -61,6 +61,7 @@ _CLIPS = (
         *(clips.c[name] for name in FOUND),
         *(clip_measures.c[name] for name in QUALITY),
         clips.c.folder,
+        clips.c.created_at,
         _METADATA,
         clip_arrays.c.dtype,
         clip_arrays.c.shape,
@@ -98,7 +99,8 @@ class IndexedClip:
 
     duration: seconds; array: the requested array, read-only, None if the clip does not have it
     (an earlier version of the analysis did not compute it) or if it is damaged; folder: None if the
-    clip came without a path; quality: the measures QUALITY, NaN for those that it lacks.
+    clip came without a path; quality: the measures QUALITY, NaN for those that it lacks;
+    created: when the clip came, seconds since 1970.
     """
 
     id: str
@@ -114,6 +116,7 @@ class IndexedClip:
     metadata: IndexedMetadata = ()
     measures: IndexedMeasures = UNKNOWN
     quality: IndexedMeasures = UNKNOWN_QUALITY
+    created: float = 0.0
 
 
 def changed_since(tx: Tx, since: int, array: str) -> Iterator[list[IndexedClip]]:
@@ -128,7 +131,7 @@ def changed_since(tx: Tx, since: int, array: str) -> Iterator[list[IndexedClip]]
 
 
 def _indexed(row: Sequence[Any]) -> IndexedClip:
-    clip_id, state, *rest, folder, metadata, dtype, shape, data = row
+    clip_id, state, *rest, folder, created, metadata, dtype, shape, data = row
     person, task, license_, source, duration, words, *measures = rest
     return IndexedClip(
         clip_id,
@@ -144,6 +147,7 @@ def _indexed(row: Sequence[Any]) -> IndexedClip:
         _metadata_of(metadata or ""),
         _with_nan(measures[: len(FOUND)]),
         _with_nan(measures[len(FOUND) :]),
+        created.timestamp(),
     )
 
 

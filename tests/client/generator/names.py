@@ -47,6 +47,7 @@ METHODS = {
     "export_collection_as_zip": "collections.export",
     "get_collection_statistics": "collections.statistics",
     "list_searches": "searches.list",
+    "explain_search": "search.why",
     "save_search": "searches.save",
     "get_search": "searches.get",
     "update_search": "searches.update",

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.search.composed.surprise import CERTAINTY, Part, mean_surprise, surprise
+from app.search.composed.surprise import CERTAINTY, Part, costs, mean_surprise, surprise
 
 PROBABILITY = st.floats(0.0, 1.0)
 KINDS = st.sampled_from(["pooled", "for", "against"])
@@ -73,3 +73,14 @@ def test_certainty_is_finite(is_against: bool) -> None:
     assert np.isfinite(found).all()
     assert (found >= 0).all()
     assert found[1] == pytest.approx(math.log(2))
+
+
+@given(PARTS)
+def test_costs_are_no_less_than_0_and_sum_to_the_mean_surprise(parts: Parts) -> None:
+    made = [
+        Part(weight, is_against=kind == "against", is_pooled=kind == "pooled")
+        for weight, kind, _ in parts
+    ]
+    found = costs(made, [likely for *_, likely in parts])
+    assert min(found) >= 0
+    assert sum(found) == pytest.approx(_twin(parts), rel=1e-6, abs=1e-9)

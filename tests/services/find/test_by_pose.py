@@ -15,8 +15,9 @@ from app.errors import BadField, ClipNotFound, ClipNotReady, PageNotFound
 from app.motion.roles.joint_roles import SUN_ROLES, JointRole
 from app.search.pose.by_pose import pose_distances
 from app.services.clips import catalogue as clips
-from app.services.find.by_pose import PoseQuery, find_pose
+from app.services.find.by_pose import find_pose
 from app.services.find.hits import Hits
+from app.services.find.queries import PoseQuery
 from app.services.find.query_source import QuerySource
 from app.services.library.library import Library
 from app.store.clips import arrays

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.errors import BadField
+from app.search.index.filters import parse_filter
 from app.services.clips import catalogue as clips
 from app.services.clips import persons
 from app.services.find.find import find_motion
@@ -13,6 +14,8 @@ from app.services.find.query_source import QuerySource
 from app.services.library.filters import resolved_filter
 from app.services.library.label_tree import get_tree, put_parents
 from app.services.library.library import Library
+from app.store.clips import clip_annotations
+from app.store.clips.clip_annotations import NewAnnotation
 from app.store.clips.filter import ClipFilter
 from app.store.clips.record import ClipRecord
 
@@ -89,3 +92,26 @@ def test_a_forgotten_person_leaves_the_tree(mine: Library) -> None:
     persons.forget_person(mine, "ada")
     assert "ada" not in get_tree(mine).tree.nodes
     assert get_tree(mine).tree.path("jog")[1] == "walk"
+
+
+def test_kinds_and_collections_count_within_trees(mine: Library, kicks: list[ClipRecord]) -> None:
+    ids = [clip.id for clip in kicks]
+    tree = {"any_of": [{"task": "kick"}, {"task": "=jog"}], "none_of": [{"task": "=kick"}]}
+    page = clips.list_clips(mine, parse_filter(tree), limit=100)
+    assert {clip.id for clip in page.items} == {ids[0], ids[2]}
+    query = MotionQuery(QuerySource(clip_id=ids[0]), filter=tree, limit=100, include_self=True)
+    assert {hit.clip.id for hit in find_motion(mine, query).items} == {ids[0], ids[2]}
+    with pytest.raises(BadField):
+        resolved_filter(mine, {"none_of": [{"collection": "collection_none"}]})
+
+
+def test_words_of_annotations_are_found(mine: Library, kicks: list[ClipRecord]) -> None:
+    said = NewAnnotation(0.0, 0.5, words=("grösser", "jog"))
+    with mine.store.write() as tx:
+        clip_annotations.add(tx, kicks[1].id, said)
+    for word in ("jog", "größer"):
+        for given in ({"annotation": word}, {"where": {"annotation": [word, "bow"]}}):
+            page = clips.list_clips(mine, parse_filter(given))
+            assert {clip.id for clip in page.items} == {kicks[1].id}
+            assert searched(mine, kicks[0], **given) == {kicks[1].id}  # type: ignore[arg-type]
+    assert not clips.list_clips(mine, parse_filter({"annotation": "jo"})).items

@@ -28,6 +28,10 @@ def get_space(
     folder: str | Sequence[str] | None = None,
     not_folder: str | Sequence[str] | None = None,
     collection: str | Sequence[str] | None = None,
+    annotation: str | Sequence[str] | None = None,
+    created_after: str | None = None,
+    created_before: str | None = None,
+    where: Mapping[str, Any] | str | None = None,
     min_duration: float | None = None,
     max_duration: float | None = None,
     min_frame_rate: float | None = None,
@@ -58,6 +62,12 @@ def get_space(
     folder: Clips whose files were in this folder of an import, or below it.
     not_folder: Clips of none of these folders.
     collection: Ids of collections: clips in any of them.
+    annotation: Words: clips with an annotation that has any of them, or a kind of it.
+    created_after: Clips that came at this time or later, ISO 8601; UTC without a zone.
+    created_before: Clips that came before this time.
+    where: A tree of filters, as JSON: {"any_of": [{"task": "walk"}, {"none_of": [{"person":
+        "ada"}]}]}. `all_of`, `any_of` and `none_of` are arrays of filters with the keys of this
+        one; at most 5 inside each other, and 50 in all.
     min_duration: Seconds.
     max_duration: Seconds.
     min_frame_rate: Frames per second.
@@ -100,6 +110,10 @@ def get_space(
             folder=folder,
             not_folder=not_folder,
             collection=collection,
+            annotation=annotation,
+            created_after=created_after,
+            created_before=created_before,
+            where=where,
             min_duration=min_duration,
             max_duration=max_duration,
             min_frame_rate=min_frame_rate,
@@ -137,6 +151,10 @@ def get_space_columns(
     folder: str | Sequence[str] | None = None,
     not_folder: str | Sequence[str] | None = None,
     collection: str | Sequence[str] | None = None,
+    annotation: str | Sequence[str] | None = None,
+    created_after: str | None = None,
+    created_before: str | None = None,
+    where: Mapping[str, Any] | str | None = None,
     min_duration: float | None = None,
     max_duration: float | None = None,
     min_frame_rate: float | None = None,
@@ -167,6 +185,12 @@ def get_space_columns(
     folder: Clips whose files were in this folder of an import, or below it.
     not_folder: Clips of none of these folders.
     collection: Ids of collections: clips in any of them.
+    annotation: Words: clips with an annotation that has any of them, or a kind of it.
+    created_after: Clips that came at this time or later, ISO 8601; UTC without a zone.
+    created_before: Clips that came before this time.
+    where: A tree of filters, as JSON: {"any_of": [{"task": "walk"}, {"none_of": [{"person":
+        "ada"}]}]}. `all_of`, `any_of` and `none_of` are arrays of filters with the keys of this
+        one; at most 5 inside each other, and 50 in all.
     min_duration: Seconds.
     max_duration: Seconds.
     min_frame_rate: Frames per second.
@@ -209,6 +233,10 @@ def get_space_columns(
             folder=folder,
             not_folder=not_folder,
             collection=collection,
+            annotation=annotation,
+            created_after=created_after,
+            created_before=created_before,
+            where=where,
             min_duration=min_duration,
             max_duration=max_duration,
             min_frame_rate=min_frame_rate,

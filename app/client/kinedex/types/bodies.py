@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal, NotRequired, TypedDict
 
-from kinedex.types.choices import EditKind, Method
+from kinedex.types.choices import BodyPart, EditKind, GroupBy, Method
 
 
 class AcceptedSpan(TypedDict):
@@ -49,6 +49,12 @@ class Filter(TypedDict):
     folder: Clips whose files were in this folder of an import, or below it.
     not_folder: Clips of none of these folders.
     collection: Ids of collections: clips in any of them.
+    annotation: Words: clips with an annotation that has any of them, or a kind of it.
+    created_after: Clips that came at this time or later, ISO 8601; UTC without a zone.
+    created_before: Clips that came before this time.
+    where: A tree of filters, as JSON: {"any_of": [{"task": "walk"}, {"none_of": [{"person":
+    "ada"}]}]}. `all_of`, `any_of` and `none_of` are arrays of filters with the keys of this
+    one; at most 5 inside each other, and 50 in all.
     min_duration: Seconds.
     max_duration: Seconds.
     min_frame_rate: Frames per second.
@@ -78,6 +84,10 @@ class Filter(TypedDict):
     folder: NotRequired[str | Sequence[str] | None]
     not_folder: NotRequired[str | Sequence[str] | None]
     collection: NotRequired[str | Sequence[str] | None]
+    annotation: NotRequired[str | Sequence[str] | None]
+    created_after: NotRequired[str | None]
+    created_before: NotRequired[str | None]
+    where: NotRequired[Mapping[str, Any] | str | None]
     min_duration: NotRequired[float | None]
     max_duration: NotRequired[float | None]
     min_frame_rate: NotRequired[float | None]
@@ -101,11 +111,53 @@ class SearchExample(TypedDict):
     end: End of the part, seconds.
     weight: How much it counts, relative to the others.
     against: Whether hits must not be like it.
+    body_part: The part of the body that counts; by default all of it. Arms: elbows and hands;
+    legs: knees and feet; upper_body: all above the hips. It is compared by warping.
     """
 
     clip_id: str
     start: NotRequired[float | None]
     end: NotRequired[float | None]
+    weight: NotRequired[float]
+    against: NotRequired[bool]
+    body_part: NotRequired[BodyPart | None]
+
+
+class SearchPose(TypedDict):
+    """A pose: of a stored clip at a time, or 13 positions, as in a search by pose.
+
+    time: Seconds from the start of the clip.
+    positions: As in `POST /v1/search/pose`.
+    """
+
+    clip_id: NotRequired[str | None]
+    time: NotRequired[float | None]
+    positions: NotRequired[Sequence[Sequence[float]] | None]
+
+
+class SearchPoses(TypedDict):
+    """Poses that hits take one after the other: "from this to that".
+
+    weight: How much it counts, relative to the others.
+    against: Whether hits must not take them.
+    """
+
+    sequence: Sequence[SearchPose]
+    weight: NotRequired[float]
+    against: NotRequired[bool]
+
+
+class SearchRhythm(TypedDict):
+    """A rhythm in which hits move: a walk has about 55 cycles, or 110 steps, a minute.
+
+    cycles_per_minute: Of the poses; half of it fits too, since a measured cycle may be two.
+    tolerance: A share of it at which the score is halved.
+    weight: How much it counts, relative to the others.
+    against: Whether hits must not move in it.
+    """
+
+    cycles_per_minute: float
+    tolerance: NotRequired[float]
     weight: NotRequired[float]
     against: NotRequired[bool]
 
@@ -119,6 +171,18 @@ class ComposedSearch(TypedDict):
     mode: How clips are ranked by words, as in a search by words.
     limit: Maximum number of items in one answer.
     include_self: Whether the examples' clips may be hits.
+    poses: Poses that hits take, one after the other.
+    rhythm: A rhythm in which hits move.
+    group_by: Show only the best hit of each group: by person, task, source, or near-duplicates
+    (`GET /v1/duplicates`). With this, `diversity`, `min_score` or `facets`, one part alone is
+    scored as one of several: by a probability, and one example at its own tempo.
+    group: With group_by: the hits of this group, by the `value` of an earlier answer.
+    diversity: Above 0, the 300 best hits are put in an order in which neighbors are unlike each
+    other (maximal marginal relevance): next is the hit with the largest (1 - diversity) x score
+    - diversity x likeness to the hits before it. The ranking ends after them.
+    min_score: Only hits with at least this score, a probability.
+    facets: Count over all hits: person, task, source, license, folder, word, or the quartiles
+    of a measure by its name (`GET /v1/measures`, or duration, speed, ...).
     examples: Motions that hits are like, or are not like.
     words: Words, phrases or sentences, as in a search by words. Together they count like one
     example of weight 1. A word with a minus before it (-left) leaves out the clips that carry
@@ -129,7 +193,14 @@ class ComposedSearch(TypedDict):
     mode: NotRequired[Literal["default", "cca", "printed"]]
     limit: NotRequired[int]
     include_self: NotRequired[bool]
+    poses: NotRequired[SearchPoses | None]
+    rhythm: NotRequired[SearchRhythm | None]
     filter: NotRequired[Filter | Mapping[str, Any] | None]
+    group_by: NotRequired[GroupBy | None]
+    group: NotRequired[str | None]
+    diversity: NotRequired[float]
+    min_score: NotRequired[float]
+    facets: NotRequired[Sequence[str]]
     cursor: NotRequired[str | None]
     examples: NotRequired[Sequence[SearchExample]]
     words: NotRequired[Sequence[str]]

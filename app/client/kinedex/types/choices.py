@@ -10,6 +10,9 @@ AnnotationFormat: TypeAlias = Literal["csv", "eaf", "babel"]
 Basis: TypeAlias = Literal["keypose", "uniform"]
 
 
+BodyPart: TypeAlias = Literal["arms", "legs", "upper_body"]
+
+
 Choice: TypeAlias = Literal["left", "right", "same"]
 
 
@@ -54,6 +57,9 @@ FileOutcome: TypeAlias = Literal[
     "deleted",
     "absent",
 ]
+
+
+GroupBy: TypeAlias = Literal["person", "task", "source", "duplicates"]
 
 
 JobKind: TypeAlias = Literal["ingest", "import", "fit", "evaluate"]
