@@ -21,7 +21,15 @@ export const SORTS = {
   "-frame_rate": "Highest frame rate first",
   "-joints": "Most joints first",
 } as const;
-export type Sort = keyof typeof SORTS;
+/** One of these, or any measure of the library with or without a minus. */
+export type Sort = keyof typeof SORTS | (string & {});
+
+const ORDER = /^-?[a-z_]{1,40}$/;
+const order: Field<Sort> = {
+  initial: "-created_at",
+  read: ([first]) => (first !== undefined && ORDER.test(first) ? first : undefined),
+  write: (value) => [value],
+};
 
 export const SIZES = { s: "Small", m: "Medium", l: "Large" } as const;
 export type Size = keyof typeof SIZES;
@@ -64,7 +72,9 @@ export const GALLERY = {
   /** Only clips with warnings. */
   doubts: flag(),
   ...BOUNDS,
-  sort: choice(Object.keys(SORTS) as Sort[], "-created_at"),
+  /** Bounds of other measures, each as NAME:LEAST:LARGEST, of which one may be left out. */
+  measure: list(),
+  sort: order,
   size: choice(Object.keys(SIZES) as Size[], "m"),
   /** Ids of the chosen clips, as far as an address may hold them. */
   sel: list(),
@@ -87,7 +97,7 @@ export function clipQuery(values: GalleryValues): ClipQuery {
   if (values.state !== "any") query.state = values.state;
   if (values.lacks !== "nothing") query.missing = [values.lacks];
   if (values.doubts) query.has_warnings = true;
-  Object.assign(query, measuresQuery(values));
+  Object.assign(query, measuresQuery(values), otherBounds(values.measure));
   return query;
 }
 
@@ -97,6 +107,39 @@ function measuresQuery(values: GalleryValues): Record<string, number> {
     const [least, most] = boundsOf(measure).map((name) => values[name]);
     if (typeof least === "number") query[`min_${measure}`] = least;
     if (typeof most === "number") query[`max_${measure}`] = most;
+  }
+  return query;
+}
+
+export interface Bounds {
+  readonly name: string;
+  readonly least: number | null;
+  readonly largest: number | null;
+}
+
+/** NAME:LEAST:LARGEST as bounds; null where it cannot be read. */
+export function readBounds(written: string): Bounds | null {
+  const [name = "", least = "", largest = ""] = written.split(":");
+  const bound = (text: string): number | null =>
+    text !== "" && Number.isFinite(Number(text)) ? Number(text) : null;
+  const bounds = { name, least: bound(least), largest: bound(largest) };
+  const isRead = ORDER.test(name) && (bounds.least !== null || bounds.largest !== null);
+  return isRead ? bounds : null;
+}
+
+/** With other bounds of one measure; with none it is not asked for. */
+export function withBounds(written: readonly string[], bounds: Bounds): readonly string[] {
+  const others = written.filter((one) => readBounds(one)?.name !== bounds.name);
+  const { name, least, largest } = bounds;
+  if (least === null && largest === null) return others;
+  return [...others, `${name}:${least ?? ""}:${largest ?? ""}`];
+}
+
+function otherBounds(written: readonly string[]): Record<string, number> {
+  const query: Record<string, number> = {};
+  for (const { name, least, largest } of written.map(readBounds).filter((one) => one !== null)) {
+    if (least !== null) query[`measure.${name}.min`] = least;
+    if (largest !== null) query[`measure.${name}.max`] = largest;
   }
   return query;
 }
@@ -123,6 +166,7 @@ export const UNFILTERED: Partial<GalleryValues> = {
   source: [],
   license: [],
   meta: [],
+  measure: [],
   state: "any",
   lacks: "nothing",
   doubts: false,
