@@ -27,7 +27,7 @@ def saved(page: Page) -> Locator:
 
 def test_facets_count_the_hits_and_refine_them(page: Page) -> None:
     page.goto("/search?q=wave")
-    person = page.get_by_role("complementary", name="Refine").get_by_role("group", name="Person")
+    person = page.get_by_role("complementary", name="Refine").get_by_role("list", name="Person")
     expect(person.get_by_role("button", name=re.compile(r"^ada\s*\d"))).to_be_visible()
     person.get_by_role("button", name="Without ada").press("Enter")
     expect(page).to_have_url(re.compile("not_person=ada"))
