@@ -39,9 +39,6 @@ export const STATES = ["ready", "processing", "queued", "failed"] as const;
 /** Labels that a clip may lack. */
 export const LACKS = ["person", "task", "words"] as const;
 
-/** The key of the metadata that names a clip's collection. */
-export const COLLECTION = "collection";
-
 const MAX = 1e6;
 
 type Other = Exclude<Measure, "duration">;
@@ -64,6 +61,8 @@ export const GALLERY = {
   word: list(),
   source: list(),
   license: list(),
+  /** Ids of collections: clips of any of them. */
+  collection: list(),
   /** Metadata, each as KEY=VALUE. */
   meta: list(),
   state: choice(["any", ...STATES], "any"),
@@ -93,6 +92,7 @@ export function clipQuery(values: GalleryValues): ClipQuery {
   for (const name of LABELS) {
     if (values[name].length > 0) query[name] = [...values[name]];
   }
+  if (values.collection.length > 0) query.collection = [...values.collection];
   Object.assign(query, metadataQuery(values.meta));
   if (values.state !== "any") query.state = values.state;
   if (values.lacks !== "nothing") query.missing = [values.lacks];
@@ -165,6 +165,7 @@ export const UNFILTERED: Partial<GalleryValues> = {
   word: [],
   source: [],
   license: [],
+  collection: [],
   meta: [],
   measure: [],
   state: "any",
