@@ -36,3 +36,10 @@ def page(browser: Browser, demo_service: Live) -> Iterator[Page]:
     """A page of the demo library, which tests must not change."""
     with opened(browser, demo_service.url) as page:
         yield page
+
+
+@pytest.fixture(scope="session")
+def workshop(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Live]:
+    """A demo library that tests may add to and correct, each what is its own."""
+    with serve_demo(tmp_path_factory.mktemp("workshop") / "data") as live:
+        yield live

@@ -3,7 +3,18 @@
 from __future__ import annotations
 
 DOCS = "/docs"
-PAGE_NAMES = ("clips", "search", "map", "todo", "models", "compare", "study", "make", "live")
+PAGE_NAMES = (
+    "clips",
+    "search",
+    "map",
+    "todo",
+    "collections",
+    "models",
+    "compare",
+    "study",
+    "make",
+    "live",
+)
 """The first part of a page's address; `app/web/src/pages/pages.ts` names the same."""
 
 

@@ -23,3 +23,20 @@ export function measured(measure: Measure, value: number | null): string | null 
   const { unit } = MEASURES[measure];
   return `${Number(value.toPrecision(3))} ${unit}`.trim();
 }
+
+/** What people read of any measure that the API names: "foot_skate" is "Foot skate". */
+export function titleOfName(name: string): string {
+  const words = name.replaceAll("_", " ");
+  return name in MEASURES
+    ? MEASURES[name as Measure].title
+    : words.charAt(0).toUpperCase() + words.slice(1);
+}
+
+/** A value with its unit in few digits; shares as percent. */
+export function figure(value: number, unit: string): string {
+  if (unit === "share") return `${Number((100 * value).toPrecision(2))} %`;
+  const isSmall = Math.abs(value) < 0.0005;
+  const number = isSmall ? 0 : Number(value.toPrecision(3));
+  const isBare = unit === "" || unit === "log" || unit.includes("..");
+  return isBare ? String(number) : `${number} ${unit}`;
+}

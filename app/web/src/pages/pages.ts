@@ -36,6 +36,12 @@ export const PAGES: readonly PageEntry[] = [
     load: () => import("./todo/Todo.svelte"),
   },
   {
+    name: "collections",
+    label: "Collections",
+    icon: "collection",
+    load: () => import("./collections/Collections.svelte"),
+  },
+  {
     name: "models",
     label: "People",
     icon: "people",

@@ -10,6 +10,8 @@ export const CLIP = {
   with: text(),
   /** The number of dimensions of the version that plays beside it. */
   k: number(null, 1, MAX_DIMENSIONS),
+  /** The annotation, or the suggestion, that is chosen. */
+  at: text(),
 };
 
 export const MAX_BESIDE = 3;

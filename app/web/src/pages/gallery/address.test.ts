@@ -1,6 +1,14 @@
 import { expect, it } from "vitest";
 import { readQuery, writeQuery } from "$/core/query";
-import { clipQuery, GALLERY, isFiltered, metadataParts, UNFILTERED } from "./address";
+import {
+  clipQuery,
+  GALLERY,
+  isFiltered,
+  metadataParts,
+  readBounds,
+  UNFILTERED,
+  withBounds,
+} from "./address";
 
 const read = (query: string) => readQuery(GALLERY, new URLSearchParams(query));
 
@@ -45,4 +53,19 @@ it("asks for metadata, for what clips lack, and for doubts", () => {
     has_warnings: true,
   });
   expect(metadataParts("take=a=b")).toEqual(["take", "a=b"]);
+});
+
+it("asks for the measures that the library names, and for their order", () => {
+  const values = read("measure=foot_skate::0.1&measure=dominance:-0.5:&measure=x&sort=-foot_skate");
+  expect(clipQuery(values)).toEqual({
+    sort: "-foot_skate",
+    "measure.foot_skate.max": 0.1,
+    "measure.dominance.min": -0.5,
+  });
+  expect(isFiltered(values)).toBe(true);
+  expect(read("sort=a b").sort).toBe("-created_at");
+  const bounds = { name: "jitter", least: 1, largest: null };
+  expect(withBounds(["turn:1:", "jitter:0:2"], bounds)).toEqual(["turn:1:", "jitter:1:"]);
+  expect(withBounds(["jitter:0:2"], { ...bounds, least: null })).toEqual([]);
+  expect(readBounds("jitter::")).toBeNull();
 });

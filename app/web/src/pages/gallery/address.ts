@@ -21,7 +21,15 @@ export const SORTS = {
   "-frame_rate": "Highest frame rate first",
   "-joints": "Most joints first",
 } as const;
-export type Sort = keyof typeof SORTS;
+/** One of these, or any measure of the library with or without a minus. */
+export type Sort = keyof typeof SORTS | (string & {});
+
+const ORDER = /^-?[a-z_]{1,40}$/;
+const order: Field<Sort> = {
+  initial: "-created_at",
+  read: ([first]) => (first !== undefined && ORDER.test(first) ? first : undefined),
+  write: (value) => [value],
+};
 
 export const SIZES = { s: "Small", m: "Medium", l: "Large" } as const;
 export type Size = keyof typeof SIZES;
@@ -30,9 +38,6 @@ export const STATES = ["ready", "processing", "queued", "failed"] as const;
 
 /** Labels that a clip may lack. */
 export const LACKS = ["person", "task", "words"] as const;
-
-/** The key of the metadata that names a clip's collection. */
-export const COLLECTION = "collection";
 
 const MAX = 1e6;
 
@@ -56,6 +61,8 @@ export const GALLERY = {
   word: list(),
   source: list(),
   license: list(),
+  /** Ids of collections: clips of any of them. */
+  collection: list(),
   /** Metadata, each as KEY=VALUE. */
   meta: list(),
   state: choice(["any", ...STATES], "any"),
@@ -64,7 +71,9 @@ export const GALLERY = {
   /** Only clips with warnings. */
   doubts: flag(),
   ...BOUNDS,
-  sort: choice(Object.keys(SORTS) as Sort[], "-created_at"),
+  /** Bounds of other measures, each as NAME:LEAST:LARGEST, of which one may be left out. */
+  measure: list(),
+  sort: order,
   size: choice(Object.keys(SIZES) as Size[], "m"),
   /** Ids of the chosen clips, as far as an address may hold them. */
   sel: list(),
@@ -83,11 +92,12 @@ export function clipQuery(values: GalleryValues): ClipQuery {
   for (const name of LABELS) {
     if (values[name].length > 0) query[name] = [...values[name]];
   }
+  if (values.collection.length > 0) query.collection = [...values.collection];
   Object.assign(query, metadataQuery(values.meta));
   if (values.state !== "any") query.state = values.state;
   if (values.lacks !== "nothing") query.missing = [values.lacks];
   if (values.doubts) query.has_warnings = true;
-  Object.assign(query, measuresQuery(values));
+  Object.assign(query, measuresQuery(values), otherBounds(values.measure));
   return query;
 }
 
@@ -97,6 +107,39 @@ function measuresQuery(values: GalleryValues): Record<string, number> {
     const [least, most] = boundsOf(measure).map((name) => values[name]);
     if (typeof least === "number") query[`min_${measure}`] = least;
     if (typeof most === "number") query[`max_${measure}`] = most;
+  }
+  return query;
+}
+
+export interface Bounds {
+  readonly name: string;
+  readonly least: number | null;
+  readonly largest: number | null;
+}
+
+/** NAME:LEAST:LARGEST as bounds; null where it cannot be read. */
+export function readBounds(written: string): Bounds | null {
+  const [name = "", least = "", largest = ""] = written.split(":");
+  const bound = (text: string): number | null =>
+    text !== "" && Number.isFinite(Number(text)) ? Number(text) : null;
+  const bounds = { name, least: bound(least), largest: bound(largest) };
+  const isRead = ORDER.test(name) && (bounds.least !== null || bounds.largest !== null);
+  return isRead ? bounds : null;
+}
+
+/** With other bounds of one measure; with none it is not asked for. */
+export function withBounds(written: readonly string[], bounds: Bounds): readonly string[] {
+  const others = written.filter((one) => readBounds(one)?.name !== bounds.name);
+  const { name, least, largest } = bounds;
+  if (least === null && largest === null) return others;
+  return [...others, `${name}:${least ?? ""}:${largest ?? ""}`];
+}
+
+function otherBounds(written: readonly string[]): Record<string, number> {
+  const query: Record<string, number> = {};
+  for (const { name, least, largest } of written.map(readBounds).filter((one) => one !== null)) {
+    if (least !== null) query[`measure.${name}.min`] = least;
+    if (largest !== null) query[`measure.${name}.max`] = largest;
   }
   return query;
 }
@@ -122,7 +165,9 @@ export const UNFILTERED: Partial<GalleryValues> = {
   word: [],
   source: [],
   license: [],
+  collection: [],
   meta: [],
+  measure: [],
   state: "any",
   lacks: "nothing",
   doubts: false,

@@ -42,14 +42,24 @@ export class Bulk {
     });
   }
 
-  /** Clips vanish at once; the service is told when the time to take it back is over. */
-  remove(ids: readonly string[]): void {
+  /**
+   * Clips vanish at once; the service is told when the time to take it back is over.
+   *
+   * onback: called when it is taken back.
+   */
+  remove(ids: readonly string[], onback: () => void = () => undefined): void {
     this.hidden = new Set([...this.hidden, ...ids]);
     const show = (): void => {
       this.hidden = new Set([...this.hidden].filter((id) => !ids.includes(id)));
     };
     notices.show(`${plural(ids.length, "clip")} deleted.`, {
-      action: { label: "Undo", run: show },
+      action: {
+        label: "Undo",
+        run: () => {
+          show();
+          onback();
+        },
+      },
       expire: () =>
         void deleteAll(ids).then((failures) => {
           if (failures.length > 0) notices.show(`Not all were deleted.${reason(failures)}`);

@@ -17,13 +17,6 @@ describe("labels of many clips", () => {
     expect(undoing(CLIP, patch)).toEqual({ task: null, words: ["kick", "slow"] });
   });
 
-  it("put a clip into a collection, and back", () => {
-    const patch = patchFor(CLIP, { collection: "best", add: [], remove: [] });
-    expect(patch).toEqual({ metadata: { collection: "best" } });
-    expect(undoing(CLIP, patch)).toEqual({ metadata: { collection: null } });
-    expect(patchFor(CLIP, { collection: null, add: [], remove: [] })).toEqual({});
-  });
-
   it("are left alone where nothing is said, and forgotten where none is wanted", () => {
     expect(patchFor(CLIP, { add: [], remove: [] })).toEqual({});
     expect(patchFor(CLIP, { person: null, add: [], remove: [] })).toEqual({ person: null });

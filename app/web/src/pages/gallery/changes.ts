@@ -1,7 +1,6 @@
 /** Changes of many clips at once, which can be taken back. */
 import { api, ask, type Clip, type Schemas } from "$/api/client";
 import { forEachOf } from "$/core/pool";
-import { COLLECTION } from "./address";
 
 const AT_ONCE = 4;
 
@@ -9,14 +8,12 @@ export interface Labels {
   /** undefined: as it is; null: none. */
   person?: string | null;
   task?: string | null;
-  /** A name in the metadata by which clips belong together. */
-  collection?: string | null;
   add: readonly string[];
   remove: readonly string[];
 }
 
 /** What has to be known of a clip to label it. */
-export type Labeled = Pick<Clip, "id" | "person" | "task" | "words" | "metadata">;
+export type Labeled = Pick<Clip, "id" | "person" | "task" | "words">;
 
 export type Patch = Schemas["ClipPatch"];
 
@@ -30,10 +27,6 @@ export function patchFor(clip: Labeled, labels: Labels): Patch {
   const patch: Patch = {};
   if (labels.person !== undefined && labels.person !== clip.person) patch.person = labels.person;
   if (labels.task !== undefined && labels.task !== clip.task) patch.task = labels.task;
-  const { collection } = labels;
-  if (collection !== undefined && collection !== (clip.metadata[COLLECTION] ?? null)) {
-    patch.metadata = { [COLLECTION]: collection };
-  }
   const words = [...new Set([...clip.words, ...labels.add])].filter(
     (word) => !labels.remove.includes(word),
   );
@@ -43,14 +36,8 @@ export function patchFor(clip: Labeled, labels: Labels): Patch {
 
 /** The patch that takes another one back. */
 export function undoing(clip: Labeled, patch: Patch): Patch {
-  const { metadata, ...others } = patch;
-  const names = Object.keys(others) as (keyof Patch & keyof Labeled)[];
-  const back: Patch = Object.fromEntries(names.map((name) => [name, clip[name]]));
-  if (metadata) {
-    const keys = Object.keys(metadata);
-    back.metadata = Object.fromEntries(keys.map((key) => [key, clip.metadata[key] ?? null]));
-  }
-  return back;
+  const names = Object.keys(patch) as (keyof Patch & keyof Labeled)[];
+  return Object.fromEntries(names.map((name) => [name, clip[name]]));
 }
 
 /** Words as people type them: separated by commas or spaces, a phrase with underscores. */

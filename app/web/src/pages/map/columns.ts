@@ -68,17 +68,10 @@ export function labeled(columns: Columns, indices: readonly number[]): Labeled[]
     const { values, codes } = labelOf(columns, name);
     return values[codes[index] ?? -1] ?? null;
   };
-  const keys = Object.keys(columns.metadata).map((key) => [key, metadataOf(columns, key)] as const);
-  return indices.map((index) => {
-    const metadata = keys
-      .map(([key, found]) => [key, found?.values[found.codes[index] ?? -1]] as const)
-      .filter(([, value]) => value !== undefined);
-    return {
-      id: columns.clip_ids[index] ?? "",
-      person: label("person", index),
-      task: label("task", index),
-      words: columns.words.values[columns.words.codes[index] ?? -1] ?? [],
-      metadata: Object.fromEntries(metadata) as Labeled["metadata"],
-    };
-  });
+  return indices.map((index) => ({
+    id: columns.clip_ids[index] ?? "",
+    person: label("person", index),
+    task: label("task", index),
+    words: columns.words.values[columns.words.codes[index] ?? -1] ?? [],
+  }));
 }

@@ -164,9 +164,8 @@ describe("the columns", () => {
       person: null,
       task: "walk",
       words: ["slow"],
-      metadata: {},
     });
-    expect(labeled(some, [2])[0]?.metadata).toEqual({ age: 20 });
+    expect(labeled(some, [2])[0]?.words).toEqual([]);
   });
 
   it("leave out clips that are hidden", () => {

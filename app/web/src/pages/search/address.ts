@@ -39,6 +39,20 @@ export const METHODS_OF: Readonly<Record<Scope, readonly Method[]>> = {
   segments: ["fused", "vector"],
 };
 
+/** The orders of hits: by their scores, or by a measure that each clip tells. */
+export const ORDERS = {
+  best: "Best first",
+  "-duration": "Longest first",
+  duration: "Shortest first",
+  "-speed": "Fastest first",
+  speed: "Slowest first",
+  "-travel": "Farthest first",
+  "-energy": "Most energy first",
+  energy: "Least energy first",
+  "-tempo": "Highest tempo first",
+} as const;
+export type Order = keyof typeof ORDERS;
+
 const MAX_SECONDS = 1e6;
 /** Hits of one page, and at most: the API's limit. */
 export const PAGE_SIZE = 24;
@@ -69,6 +83,19 @@ export const SEARCH = {
   person: list(),
   task: list(),
   word: list(),
+  source: list(),
+  license: list(),
+  /** Labels of clips that are left out. */
+  not_person: list(),
+  not_task: list(),
+  not_word: list(),
+  not_source: list(),
+  not_license: list(),
+  /** The order of the hits that are shown. */
+  order: choice(Object.keys(ORDERS) as Order[], "best"),
+  /** Id of the saved search that this is, and whether only its new hits are shown. */
+  saved: text(),
+  fresh: flag(),
   n: number(PAGE_SIZE, 1, MAX_HITS),
   /** Key of the hit that is in the player. */
   hit: text(),
@@ -78,8 +105,14 @@ export const SEARCH = {
 
 export type SearchValues = Values<typeof SEARCH>;
 
-export const FILTERS = ["person", "task", "word"] as const;
-export type FilterName = (typeof FILTERS)[number];
+/** Labels by which clips are chosen, or left out. */
+export const LABELS = ["person", "task", "word", "source", "license"] as const;
+export type LabelName = (typeof LABELS)[number];
+export type FilterName = LabelName | `not_${LabelName}`;
+export const FILTERS: readonly FilterName[] = [
+  ...LABELS,
+  ...LABELS.map((name) => `not_${name}` as const),
+];
 
 type Filter = Partial<Record<FilterName, readonly string[]>>;
 interface Options {
@@ -96,6 +129,7 @@ interface MotionOptions extends Options {
 interface WordOptions extends Options {
   readonly words: readonly string[];
   readonly mode: Mode;
+  readonly scope?: Scope;
 }
 interface PartsOptions extends Options {
   readonly examples: readonly ExampleOptions[];
@@ -123,10 +157,20 @@ export type Asked =
   | { readonly kind: "clip"; readonly body: MotionOptions & { readonly clip_id: string } }
   | { readonly kind: "file"; readonly name: string; readonly body: MotionOptions }
   /** Several parts; name: of the file among them, empty without one. */
-  | { readonly kind: "parts"; readonly name: string; readonly body: PartsOptions };
+  | { readonly kind: "parts"; readonly name: string; readonly body: PartsOptions }
+  /** A saved search that the fields of the address cannot say, or its new hits. */
+  | { readonly kind: "saved"; readonly id: string; readonly body: { readonly limit: number } }
+  | { readonly kind: "fresh"; readonly id: string };
 
 /** What the address asks for; null where it asks for nothing, or where all is against something. */
 export function askedFor(values: SearchValues): Asked | null {
+  const { saved: id } = values;
+  if (id && values.fresh) return { kind: "fresh", id };
+  return queryOf(values) ?? (id ? { kind: "saved", id, body: { limit: limitOf(values) } } : null);
+}
+
+/** The query of the address without regard to whether it is saved. */
+export function queryOf(values: SearchValues): Asked | null {
   if (isPose(values)) {
     return { kind: "pose", body: { clip_id: values.clip, time: values.pose, ...common(values) } };
   }
@@ -144,8 +188,11 @@ export function askedFor(values: SearchValues): Asked | null {
   }
   if (values.q.length === 0) return null;
   const { mode } = values;
-  return { kind: "words", body: { words: [...values.q], mode, ...common(values) } };
+  const scope = values.scope === "clips" ? {} : { scope: values.scope };
+  return { kind: "words", body: { words: [...values.q], mode, ...scope, ...common(values) } };
 }
+
+const limitOf = (values: SearchValues): number => values.n ?? PAGE_SIZE;
 
 function isPose(values: SearchValues): values is SearchValues & { pose: number } {
   return values.clip !== "" && values.pose !== null;
@@ -225,7 +272,7 @@ export function hasTempo({ method, scope }: Pick<SearchValues, "method" | "scope
 }
 
 function common(values: SearchValues): Options {
-  const limit = values.n ?? PAGE_SIZE;
+  const limit = limitOf(values);
   const chosen = FILTERS.filter((name) => values[name].length > 0);
   if (chosen.length === 0) return { limit };
   return { limit, filter: Object.fromEntries(chosen.map((name) => [name, [...values[name]]])) };
@@ -235,10 +282,13 @@ export function isFiltered(values: SearchValues): boolean {
   return FILTERS.some((name) => values[name].length > 0);
 }
 
-export const UNFILTERED: Partial<SearchValues> = { person: [], task: [], word: [] };
+export const UNFILTERED: Partial<SearchValues> = Object.fromEntries(
+  FILTERS.map((name) => [name, []]),
+);
 
 /** What another query sets: its hits are others. */
 const OTHER_HITS: Partial<SearchValues> = {
+  fresh: false,
   n: PAGE_SIZE,
   hit: "",
   t: 0,
@@ -249,6 +299,7 @@ const OTHER_HITS: Partial<SearchValues> = {
 /** A part belongs to one motion. */
 const OTHER_QUERY: Partial<SearchValues> = {
   ...OTHER_HITS,
+  saved: "",
   q: [],
   clip: "",
   ex: [],

@@ -1,14 +1,40 @@
 /** The queue's state in its address, and the clips that are in it. */
 import type { ClipQuery } from "$/pages/gallery/address";
-import { choice, text, type Values } from "$/core/query";
+import { choice, number, text, type Values } from "$/core/query";
 import { PLAYER } from "$/player/view";
 
 export const KINDS = {
   doubts: "Doubts",
   failed: "Failed",
+  duplicates: "Duplicates",
+  outliers: "Outliers",
   unlabeled: "Without labels",
 } as const;
 export type Kind = keyof typeof KINDS;
+/** Kinds whose work is one clip after the other. */
+export type ClipKind = Exclude<Kind, "duplicates" | "outliers">;
+
+export function isClipKind(kind: Kind): kind is ClipKind {
+  return kind !== "duplicates" && kind !== "outliers";
+}
+
+/** How two clips are the same. */
+export const PAIRS = {
+  exact: "the same poses",
+  copy: "with noise or cleaned",
+  rate: "at another frame rate",
+  format: "in another format or skeleton",
+  cut: "a part",
+  mirror: "mirrored",
+  similar: "another take, almost the same",
+} as const;
+
+/** The API's limit, and that of the distance of takes that are almost the same. */
+export const MAX_OUTLIERS = 1000;
+const MAX_THRESHOLD = 0.5;
+
+/** What another clip of the queue sets in the player. */
+export const FROM_START = { t: 0, from: null, to: null } as const;
 
 export const LACKS = { task: "a task", person: "a person", words: "words" } as const;
 export type Lack = keyof typeof LACKS;
@@ -18,13 +44,17 @@ export const TODO = {
   /** any: the first kind that has clips. */
   kind: choice(["any", ...(Object.keys(KINDS) as Kind[])], "any"),
   lacks: choice(Object.keys(LACKS) as Lack[], "task"),
-  /** Id of the clip that is looked at; the first one where there is none. */
+  /** How far takes may be apart that count as almost the same; 0: copies only. */
+  threshold: number(0, 0, MAX_THRESHOLD),
+  /** Place of the clip that stands beside the first one. */
+  beside: number(1, 1, MAX_OUTLIERS),
+  /** Id of the clip or the group that is looked at; the first one where there is none. */
   at: text(),
 };
 export type TodoValues = Values<typeof TODO>;
 
 /** The clips of a kind, as the API takes it. */
-export function queueQuery(kind: Kind, lacks: Lack): ClipQuery {
+export function queueQuery(kind: ClipKind, lacks: Lack): ClipQuery {
   if (kind === "failed") return { state: "failed", sort: "created_at" };
   if (kind === "doubts") return { state: "ready", has_warnings: true, sort: "created_at" };
   return { state: "ready", missing: [lacks], sort: "created_at" };
