@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { readQuery } from "$/core/query";
 import { SEARCH } from "./address";
-import { facetsOf, toggled, type Labeled } from "./facets";
+import { countsOfClips, countsOfFacets, facetsOf, toggled, type Labeled } from "./facets";
 
 const read = (address: string) => readQuery(SEARCH, new URLSearchParams(address));
 const clip = (person: string, task: string | null, ...words: string[]): Labeled => ({
@@ -11,15 +11,15 @@ const clip = (person: string, task: string | null, ...words: string[]): Labeled 
   source: null,
   license: "CC0-1.0",
 });
-const CLIPS = [
+const { counts: COUNTS } = countsOfClips([
   clip("ada", "kick", "leg"),
   clip("ada", "walk", "slow", "leg"),
   clip("bo", null, "leg"),
-];
+]);
 
 describe("facets", () => {
   it("count each value, the most frequent first, where there is a choice", () => {
-    const facets = facetsOf(CLIPS, read(""));
+    const facets = facetsOf(COUNTS, read(""));
     expect(facets.map(({ name }) => name)).toEqual(["person", "task", "word"]);
     expect(facets[2]?.values).toEqual([
       { value: "leg", count: 3, state: "free" },
@@ -27,8 +27,23 @@ describe("facets", () => {
     ]);
   });
 
+  it("are those that the API counts over all hits", () => {
+    const of = (others: number, missing: number, values: Record<string, number>) => ({
+      values: Object.entries(values).map(([value, count]) => ({ value, count })),
+      others,
+      missing,
+      quartiles: null,
+    });
+    const { count, counts } = countsOfFacets({
+      person: of(2, 1, { ada: 4, bo: 3 }),
+      word: of(0, 0, { leg: 9, slow: 1 }),
+    });
+    expect(count).toBe(10);
+    expect(facetsOf(counts, read("")).map(({ name }) => name)).toEqual(["person", "word"]);
+  });
+
   it("keep what is chosen or left out, though no hit carries it", () => {
-    const facets = facetsOf(CLIPS, read("task=jump&not_license=MIT"));
+    const facets = facetsOf(COUNTS, read("task=jump&not_license=MIT"));
     expect(facets.find(({ name }) => name === "task")?.values[0]).toEqual({
       value: "jump",
       count: 0,

@@ -23,19 +23,58 @@ export const FACET_FIELDS = ["id", "person", "task", "words", "source", "license
 
 const MAX_VALUES = 8;
 
+/** How often each value of a label is met. */
+export type Counts = Readonly<Record<LabelName, ReadonlyMap<string, number>>>;
+
+export interface Counted {
+  /** Number of clips that are counted. */
+  readonly count: number;
+  readonly counts: Counts;
+  /** Which hits: those that are likely, all, or the best ones. */
+  readonly of: "likely" | "all" | "best";
+}
+
+/** As the API counts them over all hits. */
+export function countsOfFacets(
+  facets: Readonly<Record<string, Schemas["Facet"]>>,
+): Omit<Counted, "of"> {
+  const { values = [], others = 0, missing = 0 } = facets.person ?? {};
+  // A clip has one person, or none.
+  const count = values.reduce((total, one) => total + one.count, others + missing);
+  const counts = countsBy(
+    (name) => new Map((facets[name]?.values ?? []).map(({ value, count }) => [value, count])),
+  );
+  return { count, counts };
+}
+
+export function countsOfClips(clips: readonly Labeled[]): Omit<Counted, "of"> {
+  const counts = countsBy((name) => {
+    const found = new Map<string, number>();
+    for (const clip of clips) {
+      for (const value of valuesOf(clip, name)) found.set(value, (found.get(value) ?? 0) + 1);
+    }
+    return found;
+  });
+  return { count: clips.length, counts };
+}
+
+function countsBy(of: (name: LabelName) => ReadonlyMap<string, number>): Counts {
+  return Object.fromEntries(LABELS.map((name) => [name, of(name)])) as Record<
+    LabelName,
+    ReadonlyMap<string, number>
+  >;
+}
+
 /**
  * The facets of hits: of each label its most frequent values. What is chosen or left out is there
  * too, so that it can be taken back. A label of which there is nothing to choose is left out.
  */
 export function facetsOf(
-  clips: readonly Labeled[],
+  labels: Counts,
   chosen: Pick<SearchValues, LabelName | `not_${LabelName}`>,
 ): readonly Facet[] {
   return LABELS.flatMap((name) => {
-    const counts = new Map<string, number>();
-    for (const clip of clips) {
-      for (const value of valuesOf(clip, name)) counts.set(value, (counts.get(value) ?? 0) + 1);
-    }
+    const counts = labels[name];
     const [only, without] = [chosen[name], chosen[`not_${name}`]];
     const frequent = [...counts]
       .sort(([a, one], [b, other]) => other - one || a.localeCompare(b))

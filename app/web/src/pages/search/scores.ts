@@ -20,7 +20,7 @@ export interface QueryParts {
 
 /** nameOf: the name of a clip by its id. */
 export function namedScores(
-  parts: readonly Schemas["PartScore"][],
+  parts: readonly Pick<Schemas["PartScore"], "part" | "against" | "score">[],
   query: QueryParts,
   nameOf: (id: string) => string,
 ): readonly PartScore[] {
@@ -33,6 +33,7 @@ export function namedScores(
 function nameOfPart(part: string, query: QueryParts, nameOf: (id: string) => string): string {
   const [kind, place = ""] = part.split(".");
   if (kind === "file") return query.file;
+  if (kind === "poses" || kind === "rhythm") return kind === "poses" ? "Pose" : "Rhythm";
   if (kind === "words") return wordOf(query.words[Number(place)] ?? "").text || part;
   const example = query.examples[Number(place)];
   return example ? [nameOf(example.id), partText(example)].filter(Boolean).join(", ") : part;

@@ -1,7 +1,8 @@
 /** Sends a search. */
-import { api, ask, askFor, type Schemas } from "$/api/client";
-import type { Asked } from "./address";
-import { FACET_FIELDS, type Labeled } from "./facets";
+import { api, ask, type Schemas } from "$/api/client";
+import { LABELS, type Asked } from "./address";
+import { composedOfGiven, isOfWholeClips, sendComposed, sendForm, type Composed } from "./composed";
+import { countsOfClips, countsOfFacets, FACET_FIELDS, type Counted, type Labeled } from "./facets";
 
 export type Found =
   Schemas["MotionHits"] | Schemas["WordHits"] | Schemas["PoseHits"] | Schemas["ComposedHits"];
@@ -56,56 +57,62 @@ async function sendFresh(id: string, signal: AbortSignal): Promise<Schemas["Comp
 }
 
 const FACETED = 200;
-/** A hit of words or of several parts is likely from here on; nearer examples are just nearer. */
+/** A hit is likely from here on, where its score is a probability. */
 const LIKELY = 0.5;
-const PATHS = {
-  words: "/v1/search/words",
-  clip: "/v1/search/motion",
-  parts: "/v1/search",
-} as const;
+const PATHS = { words: "/v1/search/words", clip: "/v1/search/motion" } as const;
 
 /**
- * The labels of the clips that the facets of a query count: of the likely ones among the best hits,
- * else of all of these. Null for a query that has no facets. Throws as `send`.
+ * The labels of the hits, counted: of the likely ones, else of all. Of parts of clips, those of the
+ * clips of the best hits. Null for a query that has no facets. Throws as `send`.
  */
 export async function sendFacets(
   asked: Asked,
+  file: File | null,
   signal: AbortSignal,
-): Promise<readonly Labeled[] | null> {
-  if (asked.kind !== "words" && asked.kind !== "clip" && asked.kind !== "parts") return null;
-  if (asked.kind === "parts" && asked.name) return null;
-  const fields = new URLSearchParams(
-    ["score", ...FACET_FIELDS].map((name): [string, string] => ["fields", name]),
-  );
-  const answer = await askFor(`${PATHS[asked.kind]}?${fields.toString()}`, {
-    method: "POST",
-    headers: { "Content-Type": "application/json" },
-    body: JSON.stringify({ ...asked.body, limit: FACETED }),
+): Promise<Counted | null> {
+  const isFileMissing = asked.kind === "file" || (asked.kind === "parts" && asked.name !== "");
+  // A filter in the address cannot narrow a query that the address does not say.
+  if (asked.kind === "saved" || asked.kind === "fresh" || (isFileMissing && !file)) return null;
+  if (!isOfWholeClips(asked)) return sendFacetsOfParts(asked, signal);
+  const query = composedOfGiven(asked);
+  const least = Math.max(LIKELY, Number(query.min_score ?? 0));
+  const counted = await sendCounts({ ...query, min_score: least }, file, signal);
+  if (counted.count > 0 || least > LIKELY) return { ...counted, of: "likely" };
+  return { ...(await sendCounts(query, file, signal)), of: "all" };
+}
+
+async function sendCounts(
+  query: Composed,
+  file: File | null,
+  signal: AbortSignal,
+): Promise<Omit<Counted, "of">> {
+  const body = { ...query, limit: 1, facets: LABELS };
+  const path = "/v1/search?fields=rank";
+  const { facets } = await sendComposed<Pick<Schemas["ComposedHits"], "facets">>(
+    path,
+    body,
+    file,
     signal,
-  });
-  const { items } = (await answer.json()) as { items: FacetHit[] };
-  const likely = asked.kind === "clip" ? [] : items.filter(({ score }) => score >= LIKELY);
-  const counted = likely.length > 0 ? likely : items;
-  // Several parts of a clip are hits, where parts are found; the clip counts once.
-  return [...new Map(counted.map(({ clip }) => [clip.id, clip])).values()];
+  );
+  return countsOfFacets(facets ?? {});
+}
+
+async function sendFacetsOfParts(asked: Asked, signal: AbortSignal): Promise<Counted | null> {
+  if (asked.kind !== "words" && asked.kind !== "clip") return null;
+  const fields = new URLSearchParams(
+    FACET_FIELDS.map((name): [string, string] => ["fields", name]),
+  );
+  const { items } = await sendComposed<{ items: FacetHit[] }>(
+    `${PATHS[asked.kind]}?${fields.toString()}`,
+    { ...asked.body, limit: FACETED },
+    null,
+    signal,
+  );
+  // Several parts of a clip are hits; the clip counts once.
+  const clips = [...new Map(items.map(({ clip }) => [clip.id, clip])).values()];
+  return { ...countsOfClips(clips), of: "best" };
 }
 
 interface FacetHit {
-  readonly score: number;
   readonly clip: Labeled & { readonly id: string };
-}
-
-async function sendForm<T>(
-  path: string,
-  body: object,
-  file: File | null,
-  signal: AbortSignal,
-): Promise<T> {
-  const form = new FormData();
-  for (const [name, value] of Object.entries(body)) {
-    form.append(name, typeof value === "object" ? JSON.stringify(value) : String(value));
-  }
-  if (file) form.append("file", file);
-  const answer = await askFor(path, { method: "POST", body: form, signal });
-  return (await answer.json()) as T;
 }
