@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { Path, ranked, type Alignment } from "./path";
+import { agreements, Path, ranked, type Alignment } from "./path";
 
 /** The second clip does the same at half the speed; both begin late in their clips. */
 const COUNT = 41;
@@ -49,6 +49,16 @@ describe("a path as a clock", () => {
     expect(found.means[10]).toBeCloseTo(0.1);
     expect(found.differencesOf("right_hand")[7]).toBeCloseTo(0.07);
   });
+});
+
+it("the moments of agreement are the closest ones that are apart from each other", () => {
+  const found = agreements(new Path(halfSpeed));
+  expect(found).toHaveLength(5);
+  expect(found[0]).toEqual({ seconds: 0, meters: 0.05 });
+  const times = found.map(({ seconds }) => seconds);
+  times
+    .slice(1)
+    .forEach((time, before) => expect(time - (times[before] ?? 0)).toBeGreaterThan(0.49));
 });
 
 it("waits are spread, so that no body stands and then jumps", () => {

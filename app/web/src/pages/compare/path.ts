@@ -121,6 +121,22 @@ export class Path {
   }
 }
 
+/** Seconds between two moments of a list, and how many it names at most: as `peaks` of the API. */
+const MOMENT_SECONDS = 0.5;
+const MAX_MOMENTS = 5;
+
+/** The moments at which the joints agree most, the closest first: common time and meters. */
+export function agreements(path: Path): readonly { seconds: number; meters: number }[] {
+  const found: { seconds: number; meters: number }[] = [];
+  const steps = path.clock.map((seconds, step) => ({ seconds, meters: path.means[step] ?? 0 }));
+  for (const step of steps.toSorted((one, other) => one.meters - other.meters)) {
+    const isNew = found.every(({ seconds }) => Math.abs(seconds - step.seconds) >= MOMENT_SECONDS);
+    if (isNew) found.push(step);
+    if (found.length === MAX_MOMENTS) break;
+  }
+  return found;
+}
+
 /** Joints by their mean difference, the greatest first; without the hips. */
 export function ranked({ joints, mean_differences }: Alignment): readonly [string, number][] {
   return joints

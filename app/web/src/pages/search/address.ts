@@ -101,6 +101,8 @@ export const SEARCH = {
   hit: text(),
   /** Whether each hit shows what each part of the query says. */
   why: flag(),
+  /** Id of the hit that is explained. */
+  about: text(),
 };
 
 export type SearchValues = Values<typeof SEARCH>;
@@ -291,6 +293,7 @@ const OTHER_HITS: Partial<SearchValues> = {
   fresh: false,
   n: PAGE_SIZE,
   hit: "",
+  about: "",
   t: 0,
   from: null,
   to: null,
