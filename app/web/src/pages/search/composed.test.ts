@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { readQuery } from "$/core/query";
 import { queryOf, SEARCH } from "./address";
-import { composedOfGiven, isOfWholeClips, partsOf } from "./composed";
+import { composedOfGiven, isForSomething, isOfWholeClips, partsOf } from "./composed";
 
 const asked = (address: string) => {
   const found = queryOf(readQuery(SEARCH, new URLSearchParams(address)));
@@ -33,6 +33,11 @@ describe("a query by several parts", () => {
       ["c2", 2],
     ]);
     expect(words).toEqual(["wave"]);
+  });
+
+  it("is for something", () => {
+    expect(isForSomething(asked("q=-wave&q=kick"))).toBe(true);
+    expect(isForSomething(asked("q=-wave&q=-kick"))).toBe(false);
   });
 
   it("finds whole clips only", () => {

@@ -3,6 +3,7 @@ import { api, ask, askFor, type Schemas } from "$/api/client";
 import type { Asked } from "./address";
 import type { Example } from "./parts";
 import type { QueryParts } from "./scores";
+import { wordOf } from "./words";
 
 type ComposedExample = Pick<Schemas["SearchExample"], "clip_id"> &
   Partial<Pick<Schemas["SearchExample"], "start" | "end">>;
@@ -17,6 +18,11 @@ export interface Composed {
 /** Whether the hits are whole clips: only these are the hits of a search by several parts. */
 export function isOfWholeClips(asked: Asked): boolean {
   return !("body" in asked && "scope" in asked.body) || asked.body.scope === "clips";
+}
+
+/** Whether the query is for something: words that are all against something are no such query. */
+export function isForSomething(asked: Asked): boolean {
+  return asked.kind !== "words" || asked.body.words.some((word) => !wordOf(word).isMinus);
 }
 
 /** The query without its page and scope. Throws ApiProblem, Away, AbortError for a saved one. */

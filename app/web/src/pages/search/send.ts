@@ -1,7 +1,14 @@
 /** Sends a search. */
 import { api, ask, type Schemas } from "$/api/client";
 import { LABELS, type Asked } from "./address";
-import { composedOfGiven, isOfWholeClips, sendComposed, sendForm, type Composed } from "./composed";
+import {
+  composedOfGiven,
+  isForSomething,
+  isOfWholeClips,
+  sendComposed,
+  sendForm,
+  type Composed,
+} from "./composed";
 import { countsOfClips, countsOfFacets, FACET_FIELDS, type Counted, type Labeled } from "./facets";
 
 export type Found =
@@ -62,8 +69,8 @@ const LIKELY = 0.5;
 const PATHS = { words: "/v1/search/words", clip: "/v1/search/motion" } as const;
 
 /**
- * The labels of the hits, counted: of the likely ones, else of all. Of parts of clips, those of the
- * clips of the best hits. Null for a query that has no facets. Throws as `send`.
+ * The labels of the hits, counted: of the likely ones, else of all. Of other
+ * queries, those of the clips of the best hits. Null for a query that has no facets. Throws as `send`.
  */
 export async function sendFacets(
   asked: Asked,
@@ -73,11 +80,11 @@ export async function sendFacets(
   const isFileMissing = asked.kind === "file" || (asked.kind === "parts" && asked.name !== "");
   // A filter in the address cannot narrow a query that the address does not say.
   if (asked.kind === "saved" || asked.kind === "fresh" || (isFileMissing && !file)) return null;
-  if (!isOfWholeClips(asked)) return sendFacetsOfParts(asked, signal);
+  if (!isOfWholeClips(asked) || !isForSomething(asked)) return sendFacetsOfBest(asked, signal);
   const query = composedOfGiven(asked);
-  const least = Math.max(LIKELY, Number(query.min_score ?? 0));
+  const least = Number(query.min_score ?? LIKELY);
   const counted = await sendCounts({ ...query, min_score: least }, file, signal);
-  if (counted.count > 0 || least > LIKELY) return { ...counted, of: "likely" };
+  if (counted.count > 0 || query.min_score !== undefined) return { ...counted, of: "likely" };
   return { ...(await sendCounts(query, file, signal)), of: "all" };
 }
 
@@ -97,7 +104,7 @@ async function sendCounts(
   return countsOfFacets(facets ?? {});
 }
 
-async function sendFacetsOfParts(asked: Asked, signal: AbortSignal): Promise<Counted | null> {
+async function sendFacetsOfBest(asked: Asked, signal: AbortSignal): Promise<Counted | null> {
   if (asked.kind !== "words" && asked.kind !== "clip") return null;
   const fields = new URLSearchParams(
     FACET_FIELDS.map((name): [string, string] => ["fields", name]),

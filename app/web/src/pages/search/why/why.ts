@@ -3,7 +3,7 @@ import { api, ask, type Clip, type Schemas } from "$/api/client";
 import { ApiProblem } from "$/api/problem";
 import type { Line } from "$/ui/lines";
 import type { Asked } from "../address";
-import { composedOf, isOfWholeClips, partsOf, sendComposed } from "../composed";
+import { composedOf, isForSomething, isOfWholeClips, partsOf, sendComposed } from "../composed";
 import { namedScores, type QueryParts } from "../scores";
 
 type HitReasons = Schemas["HitReasons"];
@@ -27,7 +27,7 @@ export interface NamedReason {
 
 /** Whether the API can say why a clip is a hit: parts of clips are only hits of words. */
 export function hasReasons(asked: Asked): boolean {
-  return isOfWholeClips(asked) || asked.kind === "words";
+  return isForSomething(asked) && (isOfWholeClips(asked) || asked.kind === "words");
 }
 
 /** file: the one that is a part of the query. Throws ApiProblem, Away, AbortError. */
