@@ -50,6 +50,24 @@ def test_facets_count_the_hits_and_refine_them(page: Page) -> None:
     assert lengths == sorted(lengths, reverse=True)
 
 
+def test_hits_are_grouped_diverse_and_good_enough(page: Page) -> None:
+    page.goto("/search?q=wave")
+    expect(hits(page).first).to_contain_text("wave")
+    page.get_by_label("Group by").select_option("person")
+    expect(hits(page)).to_have_count(2)
+    expect(hits(page).first).to_contain_text(re.compile(r"Best of \d+ hits of (ada|bruno)"))
+    page.get_by_label("Group by").select_option("")
+    page.get_by_label("At least").select_option("0.5")
+    page.get_by_role("button", name="Diverse").click()
+    expect(hits(page).first).to_contain_text("wave")
+    expect(hits(page).filter(has_text="walk")).to_have_count(0)
+    assert query_of(page) == {"q": ["wave"], "least": ["0.5"], "diverse": ["1"]}
+    page.reload()
+    expect(page.get_by_label("At least")).to_have_value("0.5")
+    expect(page.get_by_role("button", name="Diverse")).to_have_attribute("aria-pressed", "true")
+    expect(hits(page).filter(has_text="walk")).to_have_count(0)
+
+
 def test_words_find_moments_inside_clips(page: Page) -> None:
     page.goto("/search?q=wave")
     page.get_by_label("What is found").select_option("windows")

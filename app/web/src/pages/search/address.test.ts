@@ -29,6 +29,19 @@ it("words are asked for with their signs and the filters", () => {
   });
 });
 
+it("hits are arranged by the search for several parts, where they are whole clips", () => {
+  const arranged = "group_by=person&diverse=1&least=0.5";
+  expect(askedFor(read(`q=wave&${arranged}`))).toMatchObject({
+    kind: "parts",
+    body: { words: ["wave"], group_by: "person", diversity: 0.5, min_score: 0.5 },
+  });
+  expect(askedFor(read("clip=c1&least=0.5"))).toMatchObject({
+    kind: "parts",
+    body: { examples: [{ clip_id: "c1" }], min_score: 0.5 },
+  });
+  expect(askedFor(read(`q=wave&scope=windows&${arranged}`))).toMatchObject({ kind: "words" });
+});
+
 it("a clip or a part of it is asked for, also by older addresses", () => {
   expect(askedFor(read("clip=c1&start=0.5&end=2&scope=windows&method=dtw"))).toEqual({
     kind: "clip",

@@ -53,6 +53,21 @@ export const ORDERS = {
 } as const;
 export type Order = keyof typeof ORDERS;
 
+/** Groups of which only the best hit is shown. */
+export const GROUPS = {
+  "": "Every hit",
+  person: "Best of each person",
+  task: "Best of each task",
+  source: "Best of each source",
+  duplicates: "Best of near-duplicates",
+} as const;
+export type GroupName = keyof typeof GROUPS;
+
+/** Scores that hits can be asked to have at least. */
+export const LEAST_SCORES = [0.25, 0.5, 0.75, 0.9] as const;
+/** How much unlikeness counts in a diverse list; the rest is the score. */
+export const DIVERSITY = 0.5;
+
 const MAX_SECONDS = 1e6;
 /** Hits of one page, and at most: the API's limit. */
 export const PAGE_SIZE = 24;
@@ -91,6 +106,10 @@ export const SEARCH = {
   not_word: list(),
   not_source: list(),
   not_license: list(),
+  /** Of which groups only the best hit is shown; whether neighbors are unlike; the least score. */
+  group_by: choice(Object.keys(GROUPS) as GroupName[], ""),
+  diverse: flag(),
+  least: number(null, 0, 1),
   /** The order of the hits that are shown. */
   order: choice(Object.keys(ORDERS) as Order[], "best"),
   /** Id of the saved search that this is, and whether only its new hits are shown. */
@@ -133,7 +152,12 @@ interface WordOptions extends Options {
   readonly mode: Mode;
   readonly scope?: Scope;
 }
-interface PartsOptions extends Options {
+interface Arrangement {
+  readonly group_by?: Exclude<GroupName, "">;
+  readonly diversity?: number;
+  readonly min_score?: number;
+}
+interface PartsOptions extends Options, Arrangement {
   readonly examples: readonly ExampleOptions[];
   readonly words: readonly string[];
   readonly method: Method;
@@ -179,7 +203,8 @@ export function queryOf(values: SearchValues): Asked | null {
   const examples = examplesOf(values);
   const [one] = examples;
   const parts = examples.length + (values.file ? 1 : 0) + (values.q.length > 0 ? 1 : 0);
-  if (parts > 1) return isForSomething(values) ? severalParts(values, examples) : null;
+  const isOneOfParts = parts > 1 || (parts === 1 && isArranged(values));
+  if (isOneOfParts) return isForSomething(values) ? severalParts(values, examples) : null;
   if (one) {
     return one.isAgainst ? null : { kind: "clip", body: { ...example(one), ...motion(values) } };
   }
@@ -224,7 +249,9 @@ export function withExamples(
 
 /** Whether the query has parts, and they are all against something. */
 export function isAllAgainst(values: SearchValues): boolean {
-  return (examplesOf(values).length > 0 || values.file !== "") && !isForSomething(values);
+  const hasWordsAsPart = values.q.length > 0 && isArranged(values);
+  const hasParts = examplesOf(values).length > 0 || values.file !== "" || hasWordsAsPart;
+  return hasParts && !isForSomething(values);
 }
 
 function isForSomething(values: SearchValues): boolean {
@@ -235,6 +262,19 @@ function isForSomething(values: SearchValues): boolean {
   );
 }
 
+/** Only whole clips are arranged. */
+function isArranged(values: SearchValues): boolean {
+  return values.scope === "clips" && Object.keys(arrangementOf(values)).length > 0;
+}
+
+function arrangementOf({ group_by, diverse, least }: SearchValues): Arrangement {
+  return {
+    ...(group_by && { group_by }),
+    ...(diverse && { diversity: DIVERSITY }),
+    ...(least && { min_score: least }),
+  };
+}
+
 function severalParts(values: SearchValues, examples: readonly Example[]): Asked {
   const { q, method, mode, file } = values;
   const body = {
@@ -243,6 +283,7 @@ function severalParts(values: SearchValues, examples: readonly Example[]): Asked
     method,
     mode,
     ...(file && { ...partOf(values), against: values.less }),
+    ...arrangementOf(values),
     ...common(values),
   };
   return { kind: "parts", name: file, body };
@@ -281,12 +322,13 @@ function common(values: SearchValues): Options {
 }
 
 export function isFiltered(values: SearchValues): boolean {
-  return FILTERS.some((name) => values[name].length > 0);
+  return values.least !== null || FILTERS.some((name) => values[name].length > 0);
 }
 
-export const UNFILTERED: Partial<SearchValues> = Object.fromEntries(
-  FILTERS.map((name) => [name, []]),
-);
+export const UNFILTERED: Partial<SearchValues> = {
+  least: null,
+  ...Object.fromEntries(FILTERS.map((name) => [name, []])),
+};
 
 /** What another query sets: its hits are others. */
 const OTHER_HITS: Partial<SearchValues> = {

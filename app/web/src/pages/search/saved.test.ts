@@ -11,6 +11,7 @@ describe("a saved search", () => {
     "q=wave&q=-left&task=kick&not_person=ada",
     "clip=c1&start=0.5&method=dtw",
     "ex=c1&ex=-c2@1-2&q=wave",
+    "q=wave&group_by=person&diverse=1&least=0.5",
   ])("says the same query when it comes back: %s", (address) => {
     const query = kept(address);
     const back = valuesOf(query ?? {});

@@ -1,12 +1,14 @@
 /** Saved searches: what the API keeps of the page's query, and the page's address of what it keeps. */
 import type { Schemas } from "$/api/client";
 import {
+  DIVERSITY,
   FILTERS,
   METHODS,
   MODES,
   PAGE_SIZE,
   type Asked,
   type FilterName,
+  type GroupName,
   type Method,
   type Mode,
   type SearchValues,
@@ -38,16 +40,21 @@ export function keptOf(asked: Asked | null): Kept | null {
 
 /** What the page can say of a query that is kept, written the same way for all; else null. */
 export function valuesOf(query: Kept): Partial<SearchValues> | null {
-  const { examples = [], words = [], filter, method, mode, limit, ...others } = query;
+  const { examples = [], words = [], filter, method, mode, limit, ...unread } = query;
+  const { group_by, diversity, min_score, ...others } = unread;
   const parts = (examples as Schemas["SearchExample"][]).map(exampleOf);
   const filters = filtersOf((filter ?? {}) as Kept);
   void limit;
   const isUnknown = Object.values(others).some((value) => value !== null && value !== false);
-  if (isUnknown || filters === null || parts.some((part) => part === null)) return null;
+  const isOurs = !diversity || diversity === DIVERSITY;
+  if (isUnknown || !isOurs || filters === null || parts.some((part) => part === null)) return null;
   return {
     ex: (parts as Example[]).map(writeExample),
     q: words as readonly string[],
     ...filters,
+    group_by: (group_by ?? "") as GroupName,
+    diverse: diversity === DIVERSITY,
+    least: (min_score as number | undefined) || null,
     method: String(method ?? "fused") in METHODS ? ((method ?? "fused") as Method) : "fused",
     mode: String(mode ?? "default") in MODES ? ((mode ?? "default") as Mode) : "default",
     n: PAGE_SIZE,
