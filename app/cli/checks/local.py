@@ -28,6 +28,8 @@ EXTRAS = {
     "plots": ("matplotlib", "pictures of `kinedex evaluate`"),
     "words": ("wn", "words of similar meaning"),
     "dataframes": ("pandas", "`to_dataframe()` of the Python client"),
+    "postgres": ("psycopg", "a PostgreSQL database"),
+    "s3": ("obstore", "files in a bucket"),
 }
 """By extra: the module that it installs, and what needs it."""
 

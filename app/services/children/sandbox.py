@@ -31,6 +31,9 @@ CPU_SLACK_S = 30
 is gone."""
 NUMBA_CACHE = "NUMBA_CACHE_DIR"
 """The variable that names the folder in which numba keeps compiled code (librosa needs one)."""
+JOBLIB = "JOBLIB_MULTIPROCESSING"
+"""With the value 0, joblib (librosa loads it) does not try to make a lock, which the walls forbid:
+it would warn of that in the log at each start of a process that hears music."""
 
 _SYSTEM = (
     *("/usr/lib", "/usr/lib64", "/usr/local/lib", "/lib", "/lib64", "/etc/ld.so.cache"),
@@ -87,6 +90,7 @@ class Sandbox:
         """
         if self.writable:
             os.environ.setdefault(NUMBA_CACHE, str(self.writable[0]))
+        os.environ.setdefault(JOBLIB, "0")
         _limit(resource.RLIMIT_AS, memory_mb * 2**20)
         _limit(resource.RLIMIT_NOFILE, MAX_OPEN_FILES)
         _limit(resource.RLIMIT_FSIZE, MAX_WRITTEN_BYTES)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import multiprocessing
 import os
 import re
@@ -11,6 +12,7 @@ import subprocess
 import sys
 import threading
 import time
+import warnings
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
@@ -98,6 +100,13 @@ def _open_many(path: str) -> int:
     return len(files)
 
 
+def _warnings_of_import(name: str) -> list[str]:
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        importlib.import_module(name)
+    return [str(one.message) for one in caught if issubclass(one.category, UserWarning)]
+
+
 def _run_thread() -> int:
     found: list[int] = []
     thread = threading.Thread(target=found.append, args=(1,))
@@ -164,6 +173,11 @@ def test_no_process_is_started_or_stopped(pool: ChildPool) -> None:
 
 def test_open_files_are_limited(pool: ChildPool) -> None:
     assert 0 < pool.submit(_open_many, os.devnull).result(NET_S) < MAX_OPEN_FILES
+
+
+def test_the_libraries_that_hear_music_start_without_a_warning(pool: ChildPool) -> None:
+    pytest.importorskip("librosa")
+    assert pool.submit(_warnings_of_import, "joblib").result(NET_S) == []
 
 
 def test_memory_is_limited(pool: ChildPool) -> None:
