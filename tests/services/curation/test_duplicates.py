@@ -57,7 +57,7 @@ def copied(lib: Library, some_demo_clips: list[DemoClip]) -> dict[str, str]:
 
 
 def test_copies_are_one_group_and_the_longest_is_kept(lib: Library, copied: dict[str, str]) -> None:
-    assert compare(lib) in (0, 8)  # the worker may have compared some
+    assert compare(lib) <= 8  # the worker may have compared some, or all
     while compare(lib):
         pass
     found = duplicates.list_groups(lib)
