@@ -10,27 +10,27 @@ from pathlib import Path
 
 import pytest
 
-from app.store.files.removal_hold import RemovalHold
+from app.store.files.removal_hold import FolderHold
 
 _HOLDER = """
 import pathlib, sys, time
-from app.store.files.removal_hold import RemovalHold
-with RemovalHold(pathlib.Path(sys.argv[1])).held():
+from app.store.files.removal_hold import FolderHold
+with FolderHold(pathlib.Path(sys.argv[1])).held():
     print("held", flush=True)
     time.sleep(600)
 """
 
 
 def may_remove(folder: Path) -> bool:
-    with RemovalHold(folder).free() as is_free:
+    with FolderHold(folder).free() as is_free:
         return is_free
 
 
 def test_files_are_free_again_after_the_last_holder(tmp_path: Path) -> None:
     assert may_remove(tmp_path)
-    with RemovalHold(tmp_path).held():
+    with FolderHold(tmp_path).held():
         assert not may_remove(tmp_path)
-        with RemovalHold(tmp_path).held():
+        with FolderHold(tmp_path).held():
             assert not may_remove(tmp_path)
         assert not may_remove(tmp_path)
     assert may_remove(tmp_path)
@@ -50,7 +50,7 @@ def test_the_hold_of_a_killed_process_ends_with_it(tmp_path: Path) -> None:
 
 def test_a_folder_in_which_nothing_can_be_written_stops_no_copy(tmp_path: Path) -> None:
     gone = tmp_path / "gone"
-    with RemovalHold(gone).held():
+    with FolderHold(gone).held():
         assert may_remove(gone)
 
 
@@ -61,5 +61,5 @@ def test_a_file_system_without_locks_stops_neither(
         raise OSError(38, os.strerror(38))
 
     monkeypatch.setattr("fcntl.flock", fail)
-    with RemovalHold(tmp_path).held():
+    with FolderHold(tmp_path).held():
         assert may_remove(tmp_path)
