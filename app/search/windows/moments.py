@@ -37,7 +37,8 @@ class Curves:
     """Curves of c clips, one after the other.
 
     ids: (c,); firsts: (c + 1,) the first point of each clip, and the number of all points;
-    seconds: (c,) the lengths; values: (points,) 0..1. A point is the middle of a step.
+    seconds: (c,) the lengths; values: (points,) 0..1. A point is the middle of a step, or the end
+    of the clip if the clip ends before the middle of its last step.
     """
 
     ids: IdArray
@@ -75,7 +76,7 @@ def on_grid(
     for length in np.unique(np.round((ends - starts) / STEP)):
         some = np.flatnonzero(np.round((ends - starts) / STEP) == length)
         mean, has = _of_one_length(
-            firsts, own[some], starts[some], ends[some], values[some], int(length)
+            firsts, seconds, own[some], starts[some], ends[some], values[some], int(length)
         )
         total, count = total + mean, count + has
     return Curves(ids[numbers], firsts, seconds, total / np.maximum(count, 1))
@@ -83,6 +84,7 @@ def on_grid(
 
 def _of_one_length(
     firsts: IntArray,
+    seconds: FloatArray,
     own: IntArray,
     starts: FloatArray,
     ends: FloatArray,
@@ -95,7 +97,7 @@ def _of_one_length(
     middles, half = (starts + ends) / 2, np.maximum((ends - starts) / 2, STEP / 2)
     begin = (starts / STEP).astype(np.int64)
     for step in range(max(steps, 1) + 1):
-        at = (begin + step + 0.5) * STEP
+        at = np.minimum((begin + step + 0.5) * STEP, seconds[own])
         inside = (at >= starts) & (at <= ends) & (firsts[own] + begin + step < firsts[own + 1])
         points = (firsts[own] + begin + step)[inside]
         near = np.maximum(1.0 - np.abs(at - middles) / half, 1e-3)[inside]

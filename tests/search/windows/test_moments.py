@@ -19,7 +19,7 @@ def slow_curve(starts: FloatArray, ends: FloatArray, values: FloatArray) -> Floa
     """The curve of one clip, point by point and window by window."""
     curve = []
     for point in range(max(int(np.ceil(ends.max() / STEP)), 1)):
-        at, means = (point + 0.5) * STEP, []
+        at, means = min((point + 0.5) * STEP, ends.max()), []
         for length in {round(length / STEP) for length in ends - starts}:
             near, sums = 0.0, 0.0
             for start, end, value in zip(starts, ends, values, strict=True):
@@ -52,6 +52,15 @@ def test_curves_are_those_of_a_slow_twin() -> None:
         expected = slow_curve(*(column[own] for column in columns[1:]))
         found = curves.values[curves.firsts[number] : curves.firsts[number + 1]]
         assert found == pytest.approx(expected)
+
+
+def test_a_curve_goes_on_to_the_end_of_a_clip_that_ends_early_in_a_step() -> None:
+    starts = np.array([0.0, 1.05])
+    curves = on_grid(
+        np.array(["clip"], dtype=object), np.array([0, 0]), starts, starts + 2, np.array([0.3, 0.8])
+    )
+    assert len(curves.values) == 13  # the last step begins at 3 s, the clip ends at 3.05 s
+    assert curves.values[-1] == pytest.approx(0.8)
 
 
 @given(CURVES)
