@@ -2,6 +2,14 @@
 import type { Schemas } from "$/api/client";
 import { choice, flag, list, number, text, type Values } from "$/core/query";
 import { PLAYER } from "$/player/view";
+import {
+  GROUPS,
+  ORDERS,
+  arrangementOf,
+  type Arrangement,
+  type GroupName,
+  type Order,
+} from "./arrangement";
 import { MAX_EXAMPLES, readExample, writeExample, type Example } from "./parts";
 import { wordOf } from "./words";
 
@@ -38,35 +46,6 @@ export const METHODS_OF: Readonly<Record<Scope, readonly Method[]>> = {
   windows: ["fused", "vector", "dtw"],
   segments: ["fused", "vector"],
 };
-
-/** The orders of hits: by their scores, or by a measure that each clip tells. */
-export const ORDERS = {
-  best: "Best first",
-  "-duration": "Longest first",
-  duration: "Shortest first",
-  "-speed": "Fastest first",
-  speed: "Slowest first",
-  "-travel": "Farthest first",
-  "-energy": "Most energy first",
-  energy: "Least energy first",
-  "-tempo": "Highest tempo first",
-} as const;
-export type Order = keyof typeof ORDERS;
-
-/** Groups of which only the best hit is shown. */
-export const GROUPS = {
-  "": "Every hit",
-  person: "Best of each person",
-  task: "Best of each task",
-  source: "Best of each source",
-  duplicates: "Best of near-duplicates",
-} as const;
-export type GroupName = keyof typeof GROUPS;
-
-/** Scores that hits can be asked to have at least. */
-export const LEAST_SCORES = [0.25, 0.5, 0.75, 0.9] as const;
-/** How much unlikeness counts in a diverse list; the rest is the score. */
-export const DIVERSITY = 0.5;
 
 const MAX_SECONDS = 1e6;
 /** Hits of one page, and at most: the API's limit. */
@@ -151,11 +130,6 @@ interface WordOptions extends Options {
   readonly words: readonly string[];
   readonly mode: Mode;
   readonly scope?: Scope;
-}
-interface Arrangement {
-  readonly group_by?: Exclude<GroupName, "">;
-  readonly diversity?: number;
-  readonly min_score?: number;
 }
 interface PartsOptions extends Options, Arrangement {
   readonly examples: readonly ExampleOptions[];
@@ -265,14 +239,6 @@ function isForSomething(values: SearchValues): boolean {
 /** Only whole clips are arranged. */
 function isArranged(values: SearchValues): boolean {
   return values.scope === "clips" && Object.keys(arrangementOf(values)).length > 0;
-}
-
-function arrangementOf({ group_by, diverse, least }: SearchValues): Arrangement {
-  return {
-    ...(group_by && { group_by }),
-    ...(diverse && { diversity: DIVERSITY }),
-    ...(least && { min_score: least }),
-  };
 }
 
 function severalParts(values: SearchValues, examples: readonly Example[]): Asked {

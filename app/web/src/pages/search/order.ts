@@ -1,6 +1,6 @@
 /** The order of hits that are shown. */
 import type { Clip } from "$/api/client";
-import type { Order } from "./address";
+import type { Order } from "./arrangement";
 
 type Measured = Pick<Clip, "duration" | "speed" | "travel" | "energy" | "tempo">;
 

@@ -1,18 +1,17 @@
 /** Saved searches: what the API keeps of the page's query, and the page's address of what it keeps. */
 import type { Schemas } from "$/api/client";
 import {
-  DIVERSITY,
   FILTERS,
   METHODS,
   MODES,
   PAGE_SIZE,
   type Asked,
   type FilterName,
-  type GroupName,
   type Method,
   type Mode,
   type SearchValues,
 } from "./address";
+import { DIVERSITY, type GroupName } from "./arrangement";
 import { writeExample, type Example } from "./parts";
 
 export type Kept = Record<string, unknown>;
